@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrato/calibration/bundle_adjustment.h"
+#include "calibrato/calibration/coverage.h"
+#include "calibrato/calibration/information.h"
+#include "calibrato/calibration/termination.h"
+#include "calibrato/sensors/camera_model.h"
+#include "calibrato/sensors/measurements.h"
+
+namespace calibrato {
+
+/// Fewer views than this determine no camera.
+inline constexpr int kMinViews = 3;
+
+/// One camera and the views of a planar board (z = 0 in frame g) that it took.
+struct CameraProblem {
+  std::string model = "pinhole-radtan";
+  Resolution resolution;
+  std::vector<BoardView> views;
+  /// Parameters to hold, by index, at the value in `known`. Both empty, or both of the model's
+  /// size.
+  std::vector<bool> fixed;
+  Eigen::VectorXd known;  ///< NaN where not known; else used as the start value.
+};
+
+/// Which parameters to hold, from their names: distortion at 0, and intrinsics at their start
+/// value.
+/// @throws InputError for a name that the model does not have (the names it has are listed), or if
+/// all are held.
+void HoldParameters(const std::vector<std::string>& names, CameraProblem* problem);
+
+struct CameraCalibration {
+  Termination termination = Termination::kNoStart;
+  std::optional<CameraModel> model;         ///< The estimate; none without start values.
+  std::vector<Rigid3> T_c_g;                ///< Board poses, one a used view.
+  std::vector<BoardView> used_views;        ///< Those that could be started.
+  std::vector<Eigen::Matrix2Xd> residuals;  ///< Predicted - measured, one a used view [px].
+  int num_corners = 0;                      ///< In the used views.
+  double reprojection_rms_px = 0.0;         ///< sqrt(sum(du^2 + dv^2) / num_corners).
+  /// Of one coordinate, from the residuals and the degrees of freedom they have left [px].
+  double noise_stddev_px = 0.0;
+  /// Marginal covariance of all parameters with the poses unknown, scaled by the estimated noise;
+  /// zero rows and columns for those that were held. Empty unless it exists.
+  Eigen::MatrixXd covariance;
+  Information information;  ///< Of fu fv pu pv; set where the covariance is.
+  Coverage coverage;
+};
+
+/// Calibrates from nothing but the views: start values, bundle adjustment, covariance.
+/// @throws InputError if a view's points do not lie in the plane z = 0, or no view is given.
+[[nodiscard]] CameraCalibration CalibrateCamera(const CameraProblem& problem,
+                                                int max_iterations = 100);
+
+}  // namespace calibrato

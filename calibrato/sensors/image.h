@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "calibrato/sensors/camera_model.h"
+
+namespace calibrato {
+
+/// A grey image of 8 bits, row by row from the top left.
+struct GreyImage {
+  Resolution resolution;
+  std::vector<uint8_t> pixels;  ///< width * height
+};
+
+}  // namespace calibrato

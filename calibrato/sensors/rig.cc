@@ -1,0 +1,68 @@
+#include "calibrato/sensors/rig.h"
+
+namespace calibrato {
+namespace {
+
+CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
+  const std::vector<std::string> unknown =
+      value.UnknownKeys({"stddev_px", "blur_factor", "blur_at_half", "blur_slope"});
+  if (warnings != nullptr) warnings->insert(warnings->end(), unknown.begin(), unknown.end());
+  CornerNoise noise;
+  if (const Value* x = value.Find("stddev_px")) noise.stddev_px = x->AsNonNegative();
+  if (const Value* x = value.Find("blur_factor")) noise.blur_factor = x->AsNonNegative();
+  if (const Value* x = value.Find("blur_at_half")) noise.blur_at_half = x->AsPositive();
+  if (const Value* x = value.Find("blur_slope")) noise.blur_slope = x->AsPositive();
+  return noise;
+}
+
+}  // namespace
+
+Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
+  if (warnings != nullptr) {
+    const std::vector<std::string> unknown =
+        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise"});
+    warnings->insert(warnings->end(), unknown.begin(), unknown.end());
+  }
+  Rig rig;
+  rig.cameras = CameraChainFromValue(value.At("cameras"), warnings);
+  rig.T_e_c0 = Rigid3FromValue(value.At("T_e_c0"));
+  const Value& imu = value.At("imu");
+  rig.imu_noise = ImuNoiseFromValue(imu, warnings);
+  rig.T_c0_i = Rigid3FromValue(imu.At("T_cam_imu"));
+  if (const Value* offset = imu.Find("time_offset_s")) {
+    const double seconds = offset->AsDouble();
+    if (!(seconds >= -1e6 && seconds <= 1e6)) {
+      offset->Fail("bad time offset", "it must lie within 1e6 s", "write it in seconds");
+    }
+    rig.time_offset_i_c = Duration::FromSeconds(seconds);
+  }
+  rig.board = BoardFromValue(value.At("board"), warnings);
+  rig.T_w_g = Rigid3FromValue(value.At("board").At("T_w_g"));
+  if (const Value* exposure = value.Find("exposure_s")) rig.exposure_s = exposure->AsNonNegative();
+  if (const Value* noise = value.Find("noise")) {
+    rig.corner_noise = CornerNoiseFromValue(*noise, warnings);
+  }
+  return rig;
+}
+
+Value ToValue(const Rig& rig) {
+  Value imu = ToValue(rig.imu_noise);
+  imu.Set("T_cam_imu", ToValue(rig.T_c0_i)).Set("time_offset_s", rig.time_offset_i_c.seconds());
+  Value board = ToValue(rig.board);
+  board.Set("T_w_g", ToValue(rig.T_w_g));
+  Value noise = Value::Object();
+  noise.Set("stddev_px", rig.corner_noise.stddev_px)
+      .Set("blur_factor", rig.corner_noise.blur_factor)
+      .Set("blur_at_half", rig.corner_noise.blur_at_half)
+      .Set("blur_slope", rig.corner_noise.blur_slope);
+  Value value = Value::Object();
+  value.Set("cameras", ToValue(rig.cameras))
+      .Set("imu", std::move(imu))
+      .Set("board", std::move(board))
+      .Set("T_e_c0", ToValue(rig.T_e_c0))
+      .Set("exposure_s", rig.exposure_s)
+      .Set("noise", std::move(noise));
+  return value;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibrato/base/time.h"
+#include "calibrato/base/value.h"
+#include "calibrato/geometry/rigid3.h"
+#include "calibrato/sensors/board.h"
+#include "calibrato/sensors/camera_chain.h"
+#include "calibrato/sensors/imu.h"
+
+namespace calibrato {
+
+/// How corners are measured at fidelity `fast`: white noise that grows with motion blur, and a
+/// detector that loses the board when blur smears it.
+///
+///     sigma^2 = stddev_px^2 + (blur_factor * blur length)^2
+///     P(board detected) = 1 / (1 + exp((blur length / corner spacing - blur_at_half) /
+///     blur_slope))
+///
+/// The blur length [px] is the mean way of the corners during the exposure, the spacing that of
+/// neighbouring corners in the image.
+struct CornerNoise {
+  double stddev_px = 0.1;     ///< Of each coordinate at rest; the paper's simulator has about 0.1.
+  double blur_factor = 0.05;  ///< [-] [px of noise per px of blur]
+  double blur_at_half = 0.5;  ///< [-] Blur at which every second board is lost.
+  double blur_slope = 0.05;   ///< [-] > 0
+};
+
+/// A camera-IMU rig on its carrier, with the board before it: the truth of a simulation.
+struct Rig {
+  std::vector<Camera> cameras;
+  Rigid3 T_e_c0;             ///< Where camera 0 sits on the controlled frame.
+  Rigid3 T_c0_i;             ///< IMU to camera 0: Kalibr's T_cam_imu.
+  Duration time_offset_i_c;  ///< t_i = t_c + time_offset_i_c
+  ImuNoise imu_noise;
+  Board board;
+  Rigid3 T_w_g;             ///< Where the board stands.
+  double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.
+  CornerNoise corner_noise;
+};
+
+/// RIG.yaml (formats.md section 3). @throws InputError with line and key. Unknown keys are appended
+/// to warnings (may be null).
+[[nodiscard]] Rig RigFromValue(const Value& value, std::vector<std::string>* warnings);
+[[nodiscard]] Value ToValue(const Rig& rig);
+
+}  // namespace calibrato

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "calibrato/base/rng.h"
+#include "calibrato/motion/carrier.h"
+#include "calibrato/sensors/measurements.h"
+#include "calibrato/sensors/rig.h"
+
+namespace calibrato {
+
+/// Rate of the camera in the paper's scene [Hz].
+inline constexpr double kCameraRateHz = 10.0;
+
+/// What camera 0 recorded while the carrier moved, and what the truth was.
+struct SimulatedFrames {
+  std::vector<BoardView> views;  ///< Frames in which the board was found, in order of time.
+  std::vector<Rigid3> T_c0_g;    ///< True board pose, one a view.
+  int num_frames = 0;            ///< Taken in all; the others fall under the next two.
+  int num_out_of_image = 0;      ///< Some corner outside the image.
+  int num_lost_to_blur = 0;      ///< Not detected.
+};
+
+/// Fidelity `fast`: the carrier follows the timed loops exactly; at 10 Hz every corner is projected
+/// through the distorted lens and disturbed as `CornerNoise` says. Not modelled: images, dynamics,
+/// IMU, rolling shutter, jitter of the stamps.
+/// @param start  Camera clock at the motion's first instant; frames are taken at start + k / 10 s
+/// while
+///               the motion lasts, its end excluded.
+[[nodiscard]] SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time start,
+                                             Rng& rng);
+
+/// Pose of the board in camera 0 when the controlled frame is at T_b_e.
+[[nodiscard]] Rigid3 BoardInCamera(const Rig& rig, const Rigid3& T_b_e);
+
+}  // namespace calibrato

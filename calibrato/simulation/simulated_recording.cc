@@ -1,0 +1,84 @@
+#include "calibrato/simulation/simulated_recording.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "calibrato/base/value.h"
+#include "calibrato/recording/corner_list.h"
+
+namespace calibrato {
+namespace {
+
+constexpr double kTruthRateHz = 200.0;
+
+std::string SensorYaml(const Camera& camera) {
+  Value resolution = Value::Array();
+  resolution.Append(camera.resolution.width).Append(camera.resolution.height);
+  Value sensor = Value::Object();
+  sensor.Set("resolution", std::move(resolution)).Set("rate_hz", kCameraRateHz);
+  return ToYaml(sensor);
+}
+
+std::string TruthYaml(const Rig& rig) {
+  Value truth = ToValue(rig.cameras);
+  Value camera = truth.At("cam0");
+  camera.Set("T_cam_imu", ToValue(rig.T_c0_i))
+      .Set("timeshift_cam_imu", rig.time_offset_i_c.seconds());
+  truth.Set("cam0", std::move(camera));
+  const Eigen::Vector3d gravity_g =
+      rig.T_w_g.R.transpose() * Eigen::Vector3d(0.0, 0.0, -kStandardGravity);
+  truth.Set("gravity_g", Value::Numbers(gravity_g));
+  return ToYaml(truth);
+}
+
+std::string TruthPoses(const Rig& rig, const TimedMotion& motion, Time start) {
+  std::string text = "timestamp [ns],x,y,z,qw,qx,qy,qz\n";
+  const Time start_imu = start + rig.time_offset_i_c;
+  const auto num_poses = static_cast<int>(std::floor(motion.duration_s() * kTruthRateHz)) + 1;
+  const Duration period = Duration::FromSeconds(1.0 / kTruthRateHz);
+  for (int k = 0; k < num_poses; ++k) {
+    const Duration elapsed = period * k;
+    const Rigid3 T_g_i =
+        BoardInCamera(rig, motion.At(elapsed.seconds()).T_b_e).Inverse() * rig.T_c0_i;
+    const Eigen::Quaterniond q(T_g_i.R);
+    text += std::to_string((start_imu + elapsed).nanoseconds());
+    for (const double x : {T_g_i.t.x(), T_g_i.t.y(), T_g_i.t.z(), q.w(), q.x(), q.y(), q.z()}) {
+      text += "," + FormatNumber(x);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+// The motion as planned, with when its loops begin and, on the arm, its joints.
+std::string TimedMotionYaml(const TimedMotion& timed) {
+  Value motion = ToValue(timed.motion);
+  motion.Set("scale", timed.scale).Set("loop_duration_s", Value::Numbers(timed.loop_duration_s));
+  if (!timed.joint_path.empty()) {
+    Value path = Value::Array();
+    for (const JointSample& sample : timed.joint_path) {
+      Value joints = Value::Array();
+      joints.Append(sample.t_s);
+      for (const double angle : sample.position) joints.Append(angle);
+      path.Append(std::move(joints));
+    }
+    motion.Set("joint_path_t_s_q_rad", std::move(path));
+  }
+  return ToYaml(motion);
+}
+
+}  // namespace
+
+std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
+                                                           const TimedMotion& motion, Time start,
+                                                           const SimulatedFrames& frames) {
+  return {{"cam0_corners.csv", CornerListText(frames.views)},
+          {"sensor.yaml", SensorYaml(rig.cameras.front())},
+          {"target.yaml", ToYaml(ToValue(rig.board))},
+          {"rig.yaml", ToYaml(ToValue(rig))},
+          {"motion.yaml", TimedMotionYaml(motion)},
+          {"truth.yaml", TruthYaml(rig)},
+          {"truth_poses.csv", TruthPoses(rig, motion, start)}};
+}
+
+}  // namespace calibrato

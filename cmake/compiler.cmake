@@ -1,0 +1,19 @@
+# Warnings, sanitizers and floating point, the same for every target of the project.
+
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+add_library(calibrato_options INTERFACE)
+target_include_directories(calibrato_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(calibrato_options INTERFACE -Wall -Wextra -Werror)
+# GCC 12 sees overlapping copies in std::string that are not there (GCC bug 105651).
+target_compile_options(calibrato_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>)
+# No fast-math and no fused multiply-add: the same seed gives the same bytes on every x86-64.
+target_compile_options(calibrato_options INTERFACE -ffp-contract=off)
+
+if(CALIBRATO_SANITIZE)
+  add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=address,undefined)
+  add_compile_definitions(EIGEN_INITIALIZE_MATRICES_BY_NAN)
+endif()
