@@ -84,9 +84,9 @@ Value MotionPlot(const Table1Row& row) {
       const Rigid3 T_b_c0 = row.example.At(start_s + duration_s * k / kPointsALoop).T_b_e * T_e_c0;
       loop.Append(Numbers(T_b_c0.t));
       if (k % kAxesEvery == 0) {
-        Value axis = Value::Object();
-        axis.Set("from", Numbers(T_b_c0.t)).Set("direction", Numbers(T_b_c0.R.col(2)));
-        axes.Append(std::move(axis));
+        Eigen::Matrix<double, 6, 1> axis;
+        axis << T_b_c0.t, T_b_c0.R.col(2);
+        axes.Append(Value::Numbers(axis));
       }
     }
     start_s += duration_s;
@@ -97,7 +97,7 @@ Value MotionPlot(const Table1Row& row) {
       .Set("path_length_m", PathLength(row.example.motion))
       .Set("motion_s", row.example.duration_s())
       .Set("loops", std::move(loops))
-      .Set("axes_b", std::move(axes));
+      .Set("axis_b", std::move(axes));
   return plot;
 }
 

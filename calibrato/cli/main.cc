@@ -1,0 +1,129 @@
+// The command line: one table from words to functions. Commands live in files of their own.
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
+#include "calibrato/base/progress.h"
+#include "calibrato/cli/command.h"
+
+namespace calibrato {
+namespace {
+
+struct Command {
+  std::vector<std::string> words;
+  const char* summary;
+  SetUp set_up;
+};
+
+const std::vector<Command> kCommands = {
+    {{"calibrate", "camera"},
+     "Intrinsics of a camera from photos or corners",
+     SetUpCalibrateCamera},
+    {{"simulate"}, "A recording of a simulated rig, with its truth", SetUpSimulate},
+    {{"learn"}, "Learn a calibration motion", SetUpLearn},
+    {{"evaluate", "table1"},
+     "Learned, handcrafted and random motions on rigs never trained on",
+     SetUpEvaluateTable1},
+    {{"report"}, "Write report.html anew from the results in a folder", SetUpReport},
+};
+
+// The words above the commands.
+const std::map<std::string, const char*> kGroups = {
+    {"calibrate", "Calibrate what was recorded"}, {"evaluate", "Tables and figures of the paper"}};
+
+std::atomic<bool> g_interrupt_requested = false;
+std::atomic<bool> g_note_interruptions = false;
+
+extern "C" void OnInterrupt(int) {
+  if (g_note_interruptions && !g_interrupt_requested) {
+    g_interrupt_requested = true;
+    return;
+  }
+  // Files appear only when they are complete: nothing has to be undone.
+  std::_Exit(kInterrupted);
+}
+
+void AddGlobalOptions(CLI::App* app, GlobalOptions* global) {
+  app->add_option("--seed", global->seed,
+                  "Of everything random; the same seed gives the same bytes")
+      ->capture_default_str();
+  app->add_option("--threads", global->threads, "How many threads; 0 means one per core")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  app->add_flag("--json", global->json, "The result on stdout, nothing else");
+  app->add_flag("--quiet", global->quiet, "No progress, no summary");
+  app->add_flag("--force", global->force, "Replace a recording that exists");
+}
+
+int Run(int argc, char** argv) {
+  CLI::App app{
+      "calibrato learns how to move a camera-IMU rig so that its calibration comes out right,\n"
+      "and calibrates what was recorded."};
+  app.name("calibrato");
+  app.set_version_flag("--version", std::string("calibrato " CALIBRATO_VERSION));
+  app.require_subcommand(1);
+  GlobalOptions global;
+  std::vector<std::pair<CLI::App*, Action>> actions;
+  std::map<std::string, CLI::App*> groups;
+  for (const Command& command : kCommands) {
+    CLI::App* parent = &app;
+    for (size_t i = 0; i + 1 < command.words.size(); ++i) {
+      const std::string& word = command.words[i];
+      CLI::App*& group = groups[word];
+      if (group == nullptr) group = parent->add_subcommand(word, kGroups.at(word));
+      parent = group;
+      parent->require_subcommand(1);
+    }
+    CLI::App* leaf = parent->add_subcommand(command.words.back(), command.summary);
+    AddGlobalOptions(leaf, &global);
+    actions.emplace_back(leaf, command.set_up(*leaf, global));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+    std::string hint = "calibrato";
+    for (const CLI::App* used = &app; !used->get_subcommands().empty();) {
+      used = used->get_subcommands().front();
+      hint += " " + used->get_name();
+    }
+    throw InputError({error.what(), "", "", "see " + hint + " --help"});
+  }
+  SetNumThreads(global.threads);
+  if (global.quiet || global.json) Progress::Silence();
+  for (const auto& [leaf, action] : actions) {
+    if (leaf->parsed()) return action();
+  }
+  return kBadInput;
+}
+
+}  // namespace
+
+const std::atomic<bool>& InterruptRequested() { return g_interrupt_requested; }
+
+void NoteInterruptions() { g_note_interruptions = true; }
+
+}  // namespace calibrato
+
+int main(int argc, char** argv) {
+  std::signal(SIGINT, calibrato::OnInterrupt);
+  std::signal(SIGTERM, calibrato::OnInterrupt);
+  try {
+    return calibrato::Run(argc, argv);
+  } catch (const calibrato::InputError& error) {
+    std::fprintf(stderr, "error: %s\n", error.what());
+    return calibrato::kBadInput;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: a fault of calibrato itself: %s; please report it\n",
+                 error.what());
+    return calibrato::kNotTrusted;
+  }
+}

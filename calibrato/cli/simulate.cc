@@ -1,0 +1,99 @@
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "calibrato/base/files.h"
+#include "calibrato/base/input_error.h"
+#include "calibrato/cli/command.h"
+#include "calibrato/cli/parse.h"
+#include "calibrato/motion/carrier.h"
+#include "calibrato/simulation/fast_simulation.h"
+#include "calibrato/simulation/simulated_recording.h"
+
+namespace calibrato {
+namespace {
+
+// Where simulated clocks begin: far from zero, as real ones are.
+constexpr Time kSimulationStart = Time::FromNanoseconds(1'600'000'000'000'000'000);
+
+struct Options {
+  std::string rig;
+  std::string motion;
+  std::string carrier;
+  std::string fidelity = "fast";
+  bool scale_to_fit = false;
+  std::string out;
+};
+
+ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
+  if (options.fidelity != "fast") {
+    throw InputError({"--fidelity " + options.fidelity + " is not in this version", "", "",
+                      "use --fidelity fast"});
+  }
+  if (!global.force && std::filesystem::exists(options.out)) {
+    throw InputError({"there is something at --out already", options.out,
+                      "a recording is not replaced unasked", "choose another name or add --force"});
+  }
+  OutputFolder out(options.out);
+  const Rig rig = ReadRig(options.rig);
+  Motion motion = ReadMotion(options.motion);
+  if (!options.carrier.empty()) motion.carrier = CarrierFromName(options.carrier);
+
+  auto planned = PlanMotion(motion, rig);
+  if (const auto* refusal = std::get_if<Refusal>(&planned)) {
+    if (!options.scale_to_fit) {
+      throw InputError({"the carrier '" + CarrierName(motion.carrier) + "' can't make this motion",
+                        options.motion, refusal->Describe(),
+                        "make it smaller, or add --scale-to-fit"});
+    }
+    planned = PlanScaledToFit(motion, rig);
+  }
+  const auto& timed = std::get<TimedMotion>(planned);
+  Rng noise = Rng(global.seed).Stream("simulate");
+  const SimulatedFrames frames = SimulateFrames(rig, timed, kSimulationStart, noise);
+  if (frames.views.empty()) {
+    throw InputError({"the camera never saw the whole board", options.motion,
+                      std::to_string(frames.num_frames) + " frames were taken",
+                      "check T_w_g and T_e_c0 of the rig"});
+  }
+  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, frames)) {
+    out.Add(name, content);
+  }
+  out.Commit();
+  Value summary = Value::Object();
+  summary.Set("kind", "simulation")
+      .Set("out", options.out)
+      .Set("num_frames", frames.num_frames)
+      .Set("num_views", frames.views.size())
+      .Set("num_out_of_image", frames.num_out_of_image)
+      .Set("num_lost_to_blur", frames.num_lost_to_blur)
+      .Set("motion_s", timed.duration_s())
+      .Set("scale", timed.scale)
+      .Set("path_length_m", PathLength(timed.motion));
+  if (global.json) {
+    std::fputs(ToJson(summary).c_str(), stdout);
+  } else if (!global.quiet) {
+    std::printf("%zu of %d frames show the whole board; %.2f s, path %.3f m, scale %.3f\n%s\n",
+                frames.views.size(), frames.num_frames, timed.duration_s(),
+                PathLength(timed.motion), timed.scale, options.out.c_str());
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
+  auto options = std::make_shared<Options>();
+  app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
+  app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
+  app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
+  app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
+  app.add_flag("--scale-to-fit", options->scale_to_fit,
+               "Shrink a motion that the carrier can't make, instead of refusing it");
+  app.add_option("--out", options->out, "Folder for the recording")->required();
+  return [options, &global] { return RunSimulate(*options, global); };
+}
+
+}  // namespace calibrato

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "calibrato/sensors/image.h"
+
+namespace calibrato {
+
+/// Reads a PNG, JPEG, BMP, TIFF or PGM as grey. Colour becomes luminance; the EXIF orientation is
+/// ignored, since calibration is about the sensor's own pixels.
+///
+/// Images of 16 bits are scaled to 8: the smallest of 8, 10, 12, 14 and 16 bits that holds the
+/// brightest pixel becomes 0..255, because industrial cameras store 10 or 12 bits in files of 16,
+/// which would be all but black otherwise.
+/// @throws InputError that names the file: unreadable, a folder, empty, truncated, not an image,
+/// or more than 100 megapixels (judged by its header, before any memory is spent on pixels).
+[[nodiscard]] GreyImage ReadPhoto(const std::string& path);
+
+}  // namespace calibrato

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "calibrato/base/value.h"
+
+namespace calibrato {
+
+/// One document of each kind, with every member that the page draws, of plausible numbers.
+Value CameraDocumentForTest();
+Value LearnDocumentForTest();
+Value Table1DocumentForTest();
+
+}  // namespace calibrato

@@ -1,0 +1,76 @@
+// The page: its documents in their order, each with its verdict first.
+
+const kKinds = {
+  "camera": {title: "Camera calibration", summary: cameraSummary, section: cameraSection},
+  "learn": {title: "Learning", summary: learnSummary, section: learnSection},
+  "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
+};
+
+function unknownKind(kind) {
+  return {
+    title: `Result of kind ${kind}`,
+    summary: () => ({
+      verdict: "unknown", line: `This page cannot draw results of kind “${kind}”.`,
+      details: "Its numbers stand below as they came.",
+    }),
+    section: (result) => [element("details", {}, element("summary", {}, "The numbers"),
+                                  element("pre", {}, JSON.stringify(result, null, 2)))],
+  };
+}
+
+/** Titles of kinds that occur more than once are numbered; tasks tell learn documents apart. */
+function sectionTitles(documents, kinds) {
+  const titles = documents.map((result, i) => {
+    const task = result.kind === "learn" && result.task ? `: ${result.task}` : "";
+    return `${kinds[i].title}${task}`;
+  });
+  return titles.map((title, i) => {
+    if (titles.filter((other) => other === title).length === 1) return title;
+    return `${title} ${titles.slice(0, i + 1).filter((other) => other === title).length}`;
+  });
+}
+
+/** What throws is said in words: one broken document leaves the others readable. */
+function orReason(make) {
+  try {
+    return make();
+  } catch (error) {
+    const reason = emptyNote(`This part could not be drawn: ${error.message}.`);
+    reason.classList.add("plot-failed");
+    return [reason];
+  }
+}
+
+function writePage(documents) {
+  const report = document.getElementById("report");
+  const navigation = document.getElementById("navigation");
+  if (documents.length === 0) report.append(emptyNote("There is no result to report."));
+
+  const kinds = documents.map((result) => {
+    return Object.hasOwn(kKinds, result.kind) ? kKinds[result.kind] : unknownKind(result.kind);
+  });
+  const titles = sectionTitles(documents, kinds);
+  const overview = element("div", {class: "overview"});
+  if (documents.length > 1) report.append(overview);
+  for (const [i, result] of documents.entries()) {
+    const id = `section-${i + 1}`;
+    const section = element("section", {id}, element("h2", {}, titles[i]));
+    section.append(...orReason(() => {
+      const summary = kinds[i].summary(result);
+      if (documents.length > 1) {
+        navigation.append(element("a", {href: `#${id}`}, titles[i]));
+        const banner = verdictBanner({...summary, details: "", findings: []});
+        banner.prepend(element("a", {href: `#${id}`}, titles[i]));
+        overview.append(banner);
+      }
+      return [verdictBanner(summary)];
+    }));
+    section.append(...orReason(() => kinds[i].section(result)));
+    report.append(section);
+  }
+}
+
+writePage(JSON.parse(document.getElementById("documents").textContent));
+drawPlots().then(() => {
+  document.documentElement.dataset.state = "drawn";
+});
