@@ -43,6 +43,7 @@ void CheckOptions(const LearnOptions& options) {
   CheckRange("minibatch size", options.networks.minibatch_size, 1, kMany);
   CheckRange("minibatches per call", options.networks.minibatches_per_call, 1, kMany);
   CheckNumber("learning rate", options.networks.learning_rate, false);
+  CheckNumber("action jitter", options.networks.action_jitter, true);
   const SwarmOptions& swarm = options.planning.swarm;
   CheckRange("particles", swarm.num_particles, 1, 100'000);
   CheckRange("swarm iterations", swarm.num_iterations, 0, kMany);
@@ -69,6 +70,7 @@ std::vector<std::pair<std::string, std::string>> CourseOfTraining(const LearnOpt
           {"learning rate", FormatNumber(options.networks.learning_rate)},
           {"minibatch size", std::to_string(options.networks.minibatch_size)},
           {"minibatches per call", std::to_string(options.networks.minibatches_per_call)},
+          {"action jitter", FormatNumber(options.networks.action_jitter)},
           {"particles", std::to_string(swarm.num_particles)},
           {"swarm iterations", std::to_string(swarm.num_iterations)},
           {"remembered particles", std::to_string(swarm.num_remembered)},

@@ -32,7 +32,7 @@ struct LearnOptions {
   NetworkOptions networks;
   PlanningOptions planning;
 
-  int test_every = 5;        ///< Episodes between tests without exploration, >= 1.
+  int test_every = 2;        ///< Episodes between tests without exploration, >= 1.
   int checkpoint_every = 5;  ///< Episodes between checkpoints, >= 1.
   bool resume = false;       ///< Continue from the folder's checkpoint.
 };

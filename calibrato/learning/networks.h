@@ -18,6 +18,12 @@ struct NetworkOptions {
   double learning_rate = 1e-4;   ///< Adam, of either network, > 0.
   int minibatch_size = 32;       ///< Transitions, >= 1.
   int minibatches_per_call = 8;  ///< Gradient steps of either network in one Train(), >= 1.
+  /// Standard deviation of the noise on the current action of every transition in a minibatch, in
+  /// units of the action's limit, >= 0. Networks of this size learn a few hundred transitions by
+  /// heart, and then the swarm climbs what is not there; the noise makes them smooth over that
+  /// distance (Bishop, "Training with noise is equivalent to Tikhonov regularization", Neural
+  /// Computation 1995). Not in the paper.
+  double action_jitter = 0.5;
 };
 
 /// Mean squared errors over the minibatches of one Train(), in normalised units.

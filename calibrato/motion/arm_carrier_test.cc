@@ -1,0 +1,157 @@
+#include "calibrato/motion/arm_carrier.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/motion/joint_path_cost.h"
+#include "calibrato/motion/joint_path_search.h"
+#include "calibrato/motion/paper_scene.h"
+#include "calibrato/motion/way_point.h"
+
+namespace calibrato {
+namespace {
+
+Motion OnArm(Motion motion) {
+  motion.carrier = Carrier::kArm;
+  return motion;
+}
+
+Motion OneLoop(int coefficient, double value) {
+  Motion motion;
+  motion.carrier = Carrier::kArm;
+  motion.loops.emplace_back();
+  motion.loops[0].coefficients[coefficient] = value;
+  return motion;
+}
+
+// The least excess over the joint limits of all ways to stand at a pose, found without any path.
+double LeastExcess(const Rigid3& T_b_e) {
+  constexpr int kGridSize = 1000;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kGridSize; ++i) {
+    const double q7 = Limits().lower[6] + (Limits().upper[6] - Limits().lower[6]) * i / kGridSize;
+    for (const JointVector& q : PandaInverse(T_b_e, q7))
+      least = std::min(least, JointLimitExcess(q));
+  }
+  return least;
+}
+
+int NumBeyondLimits(const Loop& loop) {
+  int count = 0;
+  for (int i = 1; i <= kNumWayPoints; ++i) {
+    count += LeastExcess(LoopPoseAt(BasePose(), loop.coefficients, WayPointPhase(i))) > 1e-4;
+  }
+  return count;
+}
+
+void ExpectJointPathFollowsTheMotion(const TimedMotion& timed) {
+  ASSERT_EQ(timed.joint_path.size(), kNumWayPoints * timed.motion.loops.size());
+  const JointVector start = timed.joint_path.back().position;
+  JointVector previous = start;
+  double previous_t_s = 0.0;
+  for (size_t i = 0; i < timed.joint_path.size(); ++i) {
+    const auto& [t_s, q] = timed.joint_path[i];
+    EXPECT_GT(t_s, previous_t_s);
+    EXPECT_LE(JointLimitExcess(q), 0.0);
+    EXPECT_LT(PandaPose(q, nullptr).DifferenceTo(timed.At(t_s).T_b_e).norm(), 1e-8);
+    EXPECT_LT((q - previous).cwiseAbs().maxCoeff(), kMaxJointStep);
+    if ((i + 1) % kNumWayPoints == 0) {
+      EXPECT_EQ(q, start);
+    }
+    previous = q;
+    previous_t_s = t_s;
+  }
+  EXPECT_NEAR(previous_t_s, timed.duration_s(), 1e-9);
+}
+
+TEST(ArmCarrier, MakesTheExtrinsicHandcraftedMotionAtFullSpeed) {
+  const auto plan = PlanMotion(OnArm(HandcraftedMotion(Task::kExtrinsic)), PaperRig());
+  ASSERT_TRUE(std::holds_alternative<TimedMotion>(plan)) << std::get<Refusal>(plan).Describe();
+  const TimedMotion& timed = std::get<TimedMotion>(plan);
+  ExpectJointPathFollowsTheMotion(timed);
+  EXPECT_EQ(timed.duration_s(), 15.0);
+}
+
+TEST(ArmCarrier, MakesRandomMotions) {
+  const int num_motions = std::getenv("CALIBRATO_FULL_SAMPLE") != nullptr ? 50 : 4;
+  Rng rng(1);
+  for (int i = 0; i < num_motions; ++i) {
+    const Motion motion =
+        OnArm(RandomMotion(i % 2 == 0 ? Task::kIntrinsic : Task::kExtrinsic, rng));
+    const auto plan = PlanMotion(motion, PaperRig());
+    ASSERT_TRUE(std::holds_alternative<TimedMotion>(plan)) << std::get<Refusal>(plan).Describe();
+    ExpectJointPathFollowsTheMotion(std::get<TimedMotion>(plan));
+  }
+}
+
+TEST(ArmCarrier, RefusesExactlyTheWayPointsOfTheIntrinsicHandcraftedMotionThatNoJointsReach) {
+  const Motion motion = OnArm(HandcraftedMotion(Task::kIntrinsic));
+  const auto plan = PlanMotion(motion, PaperRig());
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  const Refusal& refusal = std::get<Refusal>(plan);
+  int num_bad_way_points = 0;
+  for (const Loop& loop : motion.loops) num_bad_way_points += NumBeyondLimits(loop);
+  EXPECT_EQ(num_bad_way_points, 5);
+  EXPECT_EQ(refusal.num_bad_way_points, num_bad_way_points);
+  EXPECT_EQ(refusal.loop, 3);
+  EXPECT_EQ(refusal.limit.substr(0, 6), "joint ");
+  const Rigid3 T_b_e = LoopPoseAt(BasePose(), motion.loops[refusal.loop].coefficients,
+                                  WayPointPhase(refusal.way_point));
+  EXPECT_NEAR(std::abs(refusal.value - refusal.bound), LeastExcess(T_b_e), 2e-3);
+}
+
+TEST(ArmCarrier, ScalesTheIntrinsicHandcraftedMotionToTheLargestFactorThatAnyJointsReach) {
+  // Its last loop alone decides the factor, and is planned in a quarter of the time.
+  Motion motion = OnArm(HandcraftedMotion(Task::kIntrinsic));
+  motion.loops.erase(motion.loops.begin(), motion.loops.end() - 1);
+  const TimedMotion timed = PlanScaledToFit(motion, PaperRig());
+  EXPECT_NEAR(timed.scale, 0.8799, 1e-3);
+  ExpectJointPathFollowsTheMotion(timed);
+  // Some way-point of a motion larger by the tolerance has no joint angles within the limits.
+  Loop larger = timed.motion.loops[0];
+  larger.coefficients *= 1.0 + 2e-3;
+  EXPECT_GT(NumBeyondLimits(larger), 0);
+}
+
+TEST(ArmCarrier, RefusesPosesOutOfReach) {
+  const auto plan = PlanMotion(OneLoop(1, 0.5), PaperRig());
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  const Refusal& refusal = std::get<Refusal>(plan);
+  EXPECT_EQ(refusal.limit, "way beyond the reach of the arm");
+  EXPECT_GT(refusal.value, 0.0);
+  EXPECT_EQ(refusal.unit, "m");
+}
+
+TEST(ArmCarrier, RefusesToLoseTheBoard) {
+  const auto plan = PlanMotion(OneLoop(31, 0.6), PaperRig());
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  EXPECT_EQ(std::get<Refusal>(plan).limit, "board in view");
+}
+
+TEST(ArmCarrier, RefusesNotANumber) {
+  EXPECT_TRUE(std::holds_alternative<Refusal>(PlanMotion(OneLoop(0, std::nan("")), PaperRig())));
+}
+
+TEST(ArmCarrier, PlansTheSamePathTwice) {
+  const Motion motion = OnArm(HandcraftedMotion(Task::kExtrinsic));
+  const auto first = PlanMotion(motion, PaperRig());
+  const auto second = PlanMotion(motion, PaperRig());
+  for (size_t i = 0; i < std::get<TimedMotion>(first).joint_path.size(); ++i) {
+    EXPECT_EQ(std::get<TimedMotion>(first).joint_path[i].position,
+              std::get<TimedMotion>(second).joint_path[i].position);
+  }
+}
+
+TEST(ArmCarrier, RefusesToScaleAroundABasePoseOutOfReach) {
+  Motion motion = OneLoop(1, 0.1);
+  motion.base_pose.xyz_m.x() = 1.2;
+  EXPECT_THROW((void)PlanScaledToFit(motion, PaperRig()), InputError);
+}
+
+}  // namespace
+}  // namespace calibrato

@@ -1,0 +1,101 @@
+#include "calibrato/motion/carrier.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstdio>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/geometry/rpy.h"
+#include "calibrato/motion/arm_carrier.h"
+#include "calibrato/motion/free_carrier.h"
+#include "calibrato/motion/loop_state.h"
+
+namespace calibrato {
+namespace {
+
+std::string FormatDigits(double value, int digits) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.*g", digits, value);
+  return text;
+}
+
+Motion Scaled(const Motion& motion, double factor) {
+  Motion scaled = motion;
+  for (Loop& loop : scaled.loops) loop.coefficients *= factor;
+  return scaled;
+}
+
+}  // namespace
+
+Rigid3 ArmBaseInWorld() { return {RotationFromRpy({0.0, 0.0, std::numbers::pi})}; }
+
+double TimedMotion::duration_s() const {
+  return std::accumulate(loop_duration_s.begin(), loop_duration_s.end(), 0.0);
+}
+
+CarrierState TimedMotion::At(double t_s) const {
+  assert(!motion.loops.empty() && motion.loops.size() == loop_duration_s.size());
+  size_t i = 0;
+  while (i + 1 < motion.loops.size() && t_s > loop_duration_s[i]) t_s -= loop_duration_s[i++];
+  return LoopStateAt(motion.base_pose, motion.loops[i].coefficients,
+                     QuinticPhaseAt(t_s, loop_duration_s[i]));
+}
+
+std::string Refusal::Describe() const {
+  // As many digits as it takes to see the difference.
+  constexpr int kFewDigits = 3;
+  constexpr int kManyDigits = 12;
+  int digits = kFewDigits;
+  while (digits < kManyDigits && FormatDigits(value, digits) == FormatDigits(bound, digits)) {
+    ++digits;
+  }
+  return limit + " at loop " + std::to_string(loop + 1) + ", way-point " +
+         std::to_string(way_point) + ": " + FormatDigits(value, digits) + " " + unit +
+         ", allowed " + FormatDigits(bound, digits) + " " + unit + " (" +
+         std::to_string(num_bad_way_points) + " of " + std::to_string(num_way_points) +
+         " way-points do not fit)";
+}
+
+std::variant<TimedMotion, Refusal> PlanMotion(const Motion& motion, const Rig& rig) {
+  assert(!motion.loops.empty());
+  return motion.carrier == Carrier::kArm ? PlanOnArm(motion, rig) : PlanOnFreeCarrier(motion, rig);
+}
+
+TimedMotion PlanScaledToFit(const Motion& motion, const Rig& rig) {
+  std::variant<TimedMotion, Refusal> plan = PlanMotion(motion, rig);
+  if (auto* whole = std::get_if<TimedMotion>(&plan)) return std::move(*whole);
+
+  plan = PlanMotion(Scaled(motion, 0.0), rig);
+  if (const auto* refusal = std::get_if<Refusal>(&plan)) {
+    throw InputError({"the motion does not fit the " + CarrierName(motion.carrier) + " carrier", "",
+                      "not even its base pose does: " + refusal->Describe(),
+                      "choose another base_pose"});
+  }
+  // Beyond the tolerance only while nothing but zero is known to fit.
+  constexpr double kTolerance = 1e-3;
+  constexpr double kSmallestFactor = 1e-9;
+  double fits = 0.0;
+  double too_large = 1.0;
+  TimedMotion best;
+  while (too_large - fits > kTolerance || fits == 0.0) {
+    const double factor = 0.5 * (fits + too_large);
+    if (factor < kSmallestFactor) {
+      throw InputError({"the motion does not fit the " + CarrierName(motion.carrier) + " carrier",
+                        "", "its base pose lies on a limit of the carrier",
+                        "choose another base_pose"});
+    }
+    plan = PlanMotion(Scaled(motion, factor), rig);
+    if (auto* timed = std::get_if<TimedMotion>(&plan)) {
+      best = std::move(*timed);
+      best.scale = fits = factor;
+    } else {
+      too_large = factor;
+    }
+  }
+  return best;
+}
+
+}  // namespace calibrato
