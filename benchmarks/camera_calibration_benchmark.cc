@@ -1,5 +1,5 @@
-// Budgets (design): a camera solve of 200 views x 42 corners with covariance 0.1 s; of 2000 views 1
-// s; linear in views.
+// Budgets: 0.1 s for a camera solve of 200 views x 42 corners with covariance; 1 s for 2000 views:
+// linear in views.
 
 #include <benchmark/benchmark.h>
 

@@ -18,7 +18,7 @@ struct CameraReportCard {
   std::vector<std::string> images_without_board;
 };
 
-/// result.json of `calibrate camera` (formats.md section 3). With several cameras, which are
+/// result.json of `calibrate camera` (docs/formats.md section 3). With several cameras, which are
 /// calibrated each on its own: the covariance is block-diagonal; coverage is the least of them,
 /// information that of the camera with the largest a_optimality; findings name their camera.
 /// @pre at least one

@@ -18,7 +18,7 @@ struct Finding {
   std::string remedy;  ///< "move it across the whole width of the image"; may be empty
 };
 
-/// To be believed or not (formats.md section 1).
+/// To be believed or not (docs/formats.md section 1).
 enum class Verdict { kPass, kWarn, kFail };
 [[nodiscard]] std::string_view VerdictName(Verdict verdict);  ///< "pass", "warn", "fail"
 

@@ -33,6 +33,11 @@ std::vector<BoardView> CountedViews(const Rig& rig, const TimedMotion& motion, R
                          rig.cameras.front().resolution);
 }
 
+struct NamedTimedMotion {
+  std::string policy;
+  TimedMotion timed;
+};
+
 Trial RunTrial(const Rig& rig, const TimedMotion& motion, const Rng& noise) {
   const Camera& camera = rig.cameras.front();
   Trial trial;
@@ -94,49 +99,58 @@ Table1 EvaluateTable1(const Table1Options& options) {
   const auto num_rigs = static_cast<size_t>(options.num_rigs);
   const Rig scene = PaperRig();
 
-  // What is fixed is planned once, in the nominal scene; planning sees the rig only through the
-  // board's place in view.
-  std::vector<NamedMotion> fixed = {{"handcrafted", HandcraftedMotion(Task::kIntrinsic)}};
-  fixed.insert(fixed.end(), options.motions.begin(), options.motions.end());
-  std::vector<TimedMotion> planned;
-  for (const NamedMotion& named : fixed) {
-    planned.push_back(PlanOrScale(named.motion, options.carrier, scene));
-  }
-  const auto random_motion = [&](size_t i, const Rig& rig) {
-    Rng draw = rng.Stream(kMotionPurpose, i);
-    return PlanOrScale(RandomMotion(Task::kIntrinsic, draw), options.carrier, rig);
+  struct RigUnderTrial {
+    Rig rig;
+    TimedMotion random;
   };
+  const auto rigs = ParallelMap<RigUnderTrial>(num_rigs, [&](size_t i) {
+    Rng draw_rig = rng.Stream(kRigPurpose, i);
+    Rng draw_motion = rng.Stream(kMotionPurpose, i);
+    RigUnderTrial trial{DrawRig(options.rigs, draw_rig), {}};
+    trial.random =
+        PlanOrScale(RandomMotion(Task::kIntrinsic, draw_motion), options.carrier, trial.rig);
+    return trial;
+  });
+  std::vector<double> random_paths;
+  for (const RigUnderTrial& trial : rigs) random_paths.push_back(PathLength(trial.random.motion));
+  const double random_path = Mean(random_paths);
+
+  // What is the same for all rigs is planned once, in the nominal scene: planning sees the rig only
+  // through the board's place in view.
+  std::vector<NamedTimedMotion> fixed = {
+      {"handcrafted", PlanOrScale(HandcraftedMotion(Task::kIntrinsic), options.carrier, scene)}};
+  for (const NamedMotion& named : options.motions) {
+    fixed.push_back({named.policy, PlanOrScale(named.motion, options.carrier, scene)});
+    const double path = PathLength(fixed.back().timed.motion);
+    if (!(path > random_path)) continue;
+    Motion shorter = fixed.back().timed.motion;
+    for (Loop& loop : shorter.loops) loop.coefficients *= random_path / path;
+    fixed.push_back(
+        {named.policy + " at random's path", PlanOrScale(shorter, options.carrier, scene)});
+  }
 
   Table1 table{options, std::vector<Table1Row>(1 + fixed.size())};
   table.rows[0].policy = "random";
   for (size_t k = 0; k < fixed.size(); ++k) table.rows[k + 1].policy = fixed[k].policy;
 
-  struct RigTrials {
-    std::vector<Trial> trials;  // one a row
-    double random_scale = 1.0;
-  };
   Progress progress("evaluating", options.num_rigs);
-  const auto outcomes = ParallelMap<RigTrials>(num_rigs, [&](size_t i) {
-    Rng rigs = rng.Stream(kRigPurpose, i);
-    const Rig rig = DrawRig(options.rigs, rigs);
+  const auto outcomes = ParallelMap<std::vector<Trial>>(num_rigs, [&](size_t i) {
     const Rng noise = rng.Stream(kNoisePurpose, i);
-    RigTrials outcome;
-    const TimedMotion random = random_motion(i, rig);
-    outcome.random_scale = random.scale;
-    outcome.trials.push_back(RunTrial(rig, random, noise));
-    for (const TimedMotion& motion : planned)
-      outcome.trials.push_back(RunTrial(rig, motion, noise));
+    std::vector<Trial> trials = {RunTrial(rigs[i].rig, rigs[i].random, noise)};
+    for (const NamedTimedMotion& motion : fixed) {
+      trials.push_back(RunTrial(rigs[i].rig, motion.timed, noise));
+    }
     progress.Advance();
-    return outcome;
+    return trials;
   });
 
   for (size_t k = 0; k < table.rows.size(); ++k) {
     Table1Row& row = table.rows[k];
-    for (const RigTrials& outcome : outcomes) {
-      row.trials.push_back(outcome.trials[k]);
-      if (k == 0) row.scale = std::min(row.scale, outcome.random_scale);
+    for (size_t i = 0; i < num_rigs; ++i) {
+      row.trials.push_back(outcomes[i][k]);
+      if (k == 0) row.scale = std::min(row.scale, rigs[i].random.scale);
     }
-    row.example = k == 0 ? random_motion(0, scene) : planned[k - 1];
+    row.example = k == 0 ? rigs[0].random : fixed[k - 1].timed;
     if (k > 0) row.scale = row.example.scale;
     row.example_views = CountedViews(scene, row.example, rng.Stream(kNoisePurpose, 0));
     Summarise(&row, rng.Stream("bootstrap", k));

@@ -7,8 +7,8 @@
 
 namespace calibrato {
 
-/// {"kind": "table1", "rows": [..]} as in formats.md section 3. Every figure stands beside its n
-/// and seed.
+/// {"kind": "table1", "rows": [..]} as in docs/formats.md section 3. Every figure stands beside its
+/// n and seed.
 [[nodiscard]] Value ToValue(const Table1& table);
 
 /// What the report draws: errors of every rig, motions of the camera in the arm's base frame, what

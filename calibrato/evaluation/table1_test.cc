@@ -33,12 +33,26 @@ TEST(Table1, AMotionUnderAnotherNameHasTheSameErrors) {
   Table1Options options = SmallOptions();
   options.motions = {{"again", HandcraftedMotion(Task::kIntrinsic)}};
   const Table1 table = EvaluateTable1(options);
-  ASSERT_EQ(table.rows.size(), 3U);
+  ASSERT_EQ(table.rows.size(), 4U);
   for (size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(table.rows[2].trials[i].relative_error, table.rows[1].trials[i].relative_error);
   }
   EXPECT_EQ(table.rows[2].ratio_ci95.low, 1.0);
   EXPECT_EQ(table.rows[2].ratio_ci95.high, 1.0);
+}
+
+TEST(Table1, ALongerMotionHasASecondRowAtTheLengthOfTheRandomOnes) {
+  Table1Options options = SmallOptions();
+  Motion shorter = HandcraftedMotion(Task::kIntrinsic);
+  for (Loop& loop : shorter.loops) loop.coefficients *= 0.5;
+  options.motions = {{"long", HandcraftedMotion(Task::kIntrinsic)}, {"short", shorter}};
+  const Table1 table = EvaluateTable1(options);
+  ASSERT_EQ(table.rows.size(), 5U);
+  EXPECT_EQ(table.rows[3].policy, "long at random's path");
+  double random_path = 0.0;
+  for (const Trial& trial : table.rows[0].trials) random_path += trial.path_length_m / 6.0;
+  EXPECT_NEAR(table.rows[3].trials[0].path_length_m, random_path, 1e-9);
+  EXPECT_EQ(table.rows[4].policy, "short");
 }
 
 TEST(Table1, IsTheSameToTheByteForAnyNumberOfThreads) {

@@ -9,7 +9,7 @@ namespace calibrato {
 ///
 /// Perturbation, everywhere in calibrato: R = Exp(dtheta) R^, t = t^ + dt, order [dtheta, dt], both
 /// in frame a. It is that of SO(3) x R^3, not of SE(3): a shift does not depend on a turn, as for
-/// the sigmas that a person reads (formats.md, "Extrinsics").
+/// the sigmas that a person reads (docs/formats.md section 2).
 struct Rigid3 {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
   Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< [m]

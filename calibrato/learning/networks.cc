@@ -106,12 +106,13 @@ struct HistoryModel::Impl {
       const Transition& transition = *drawn[static_cast<size_t>(r)];
       histories.push_back(&transition.history);
       actions.row(r) = NormalisedAction(transition.action).transpose();
-      for (float& coefficient : actions.row(r)) {
-        coefficient += static_cast<float>(options.action_jitter * rng.Normal());
-      }
       observations.row(r) =
           normalisation.Normalised(transition.next_observation).cast<float>().transpose();
       rewards(r, 0) = static_cast<float>(normalisation.Normalised(transition.reward));
+      if (options.action_jitter == 0.0) continue;
+      for (float& coefficient : actions.row(r)) {
+        coefficient += static_cast<float>(options.action_jitter * rng.Normal());
+      }
     }
     return {MakeBatch(histories), Copy(actions), Copy(observations), Copy(rewards)};
   }

@@ -48,8 +48,10 @@ ReplayMemory LearnableMemory(int num_transitions) {
   return memory;
 }
 
+// Without jitter: what they learn is exact.
 NetworkOptions SmallNetworks() {
   NetworkOptions options;
+  options.action_jitter = 0.0;
   options.hidden_size = 16;
   options.learning_rate = 3e-3;
   return options;
@@ -273,6 +275,7 @@ TEST(Train, StepsDownTheGradientOfEquationsFourAndFive) {
     NetworkOptions options;
     options.hidden_size = 4;
     options.minibatches_per_call = 1;
+    options.action_jitter = 0.0;
     Rng weights_rng(5);
     HistoryModel model(2, options, kLimit, weights_rng);
     Rng rng(12);
@@ -286,6 +289,34 @@ TEST(Train, StepsDownTheGradientOfEquationsFourAndFive) {
     ExpectStepDownhill(before.dynamics, after.dynamics, memory[0], 2, 1e-4);
     ExpectStepDownhill(before.reward, after.reward, memory[0], 1, 1e-4);
   }
+}
+
+// Rewards that have nothing to do with the action: whatever slope a network finds was learned by
+// heart.
+TEST(Train, JitterKeepsNetworksFromInventingSlopes) {
+  Rng rng(21);
+  ReplayMemory memory(60);
+  for (int i = 0; i < 60; ++i) {
+    Transition transition = Learnable(0, rng);
+    transition.reward = rng.Normal();
+    memory.Add(transition);
+  }
+  const auto mean_slope = [&](double jitter) {
+    NetworkOptions options = SmallNetworks();
+    options.action_jitter = jitter;
+    Rng weights_rng(5);
+    HistoryModel model(2, options, kLimit, weights_rng);
+    Rng training_rng(22);
+    for (int i = 0; i < 150; ++i) (void)model.Train(memory, training_rng);
+    Rng action_rng(23);
+    Eigen::MatrixXd actions(36, 20);
+    for (Eigen::Index k = 0; k < actions.cols(); ++k) actions.col(k) = RandomAction(action_rng);
+    return model.PredictReturns(model.Encode(memory[0].history), actions, true)
+        .gradients.colwise()
+        .norm()
+        .mean();
+  };
+  EXPECT_LT(mean_slope(0.5), 0.5 * mean_slope(0.0));
 }
 
 TEST(Train, LearnsFromTheActionAndFromTheHistoryOfEveryLength) {

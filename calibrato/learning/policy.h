@@ -15,7 +15,7 @@ namespace calibrato {
 ///
 ///     policy.yaml  format version, where it comes from, options, normalisation
 ///     policy.bin   the networks' weights and the remembered particles
-///     motion.yaml  the motion, see formats.md section 3
+///     motion.yaml  the motion, see docs/formats.md section 3
 struct Policy {
   // Where it comes from.
   Task task = Task::kIntrinsic;

@@ -87,6 +87,7 @@ TEST(Learn, FindsActionsMuchBetterThanRandomOnes) {
   options.num_episodes = 60;
   options.networks.hidden_size = 32;
   options.networks.learning_rate = 3e-3;
+  options.networks.action_jitter = 0.0;  // The reward is smooth and free of noise.
   KnownEnvironment environment;
   const std::string folder = FreshFolder("better");
   const LearnResult result = Learn(options, environment, folder);
@@ -127,10 +128,31 @@ TEST(Learn, LogsEveryEpisodeAndTest) {
   EXPECT_EQ(result.num_calibrations, 2 * (14 + 4));
 }
 
-TEST(Learn, GivesThePolicyTheMotionOfItsFinalTest) {
+TEST(Learn, GivesThePolicyTheMotionOfItsBestTest) {
+  KnownEnvironment environment;
+  const std::string folder = FreshFolder("best_test");
+  LearnOptions options = ShortRun();
+  options.test_every = 1;
+  (void)Learn(options, environment, folder);
+  double best_return = -1e9;
+  double path_length = 0.0;
+  double last_return = 0.0;
+  for (const Value& line : LinesOf(folder)) {
+    if (line.At("kind").AsString() != "test") continue;
+    last_return = line.At("return").AsDouble();
+    if (!(last_return > best_return)) continue;
+    best_return = last_return;
+    path_length = line.At("path_length_m").AsDouble();
+  }
+  EXPECT_GT(best_return, last_return);  // Else this test would show nothing.
+  EXPECT_NEAR(PathLength(ReadPolicy(folder + "/policy").motion), path_length, 1e-9);
+}
+
+TEST(Learn, CanReplanTheMotionOfItsFinalTest) {
   KnownEnvironment environment;
   const std::string folder = FreshFolder("motion");
   LearnOptions options = ShortRun();
+  options.test_every = 100;  // The final test is the only one.
   options.carrier = Carrier::kArm;
   options.loop_duration_s = 6.0;
   const LearnResult result = Learn(options, environment, folder);

@@ -53,7 +53,8 @@ TEST(IntrinsicEnvironment, TheErrorBeforeAnyDataIsThatOfThePriorMean) {
   EXPECT_NEAR(environment.relative_error(), 1.41421356 * 14.2439 / 938.2, 1e-4);
 }
 
-// Design: the first view of the scene covers 0.60 of the size range, and nothing else.
+// The first view of the scene covers 0.60 of the size range, and nothing else. By hand: corners
+// over 0.30 m x 0.36 m at 1.442 m and f = 585.76 px have s = 133.5 px, 0.241 of sqrt(640 * 480).
 TEST(IntrinsicEnvironment, TheInitialViewCoversSizeAlone) {
   IntrinsicTask task;
   task.fixed_rig = PaperRig();

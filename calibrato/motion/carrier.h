@@ -60,7 +60,7 @@ struct Refusal {
   [[nodiscard]] std::string Describe() const;
 };
 
-/// The limits of the free carrier (design: a hand or a gantry).
+/// The limits of the free carrier, a hand or a gantry (docs/simulation.md).
 struct FreeCarrierLimits {
   double speed = 1.0;                  ///< [m/s]
   double acceleration = 3.0;           ///< [m/s^2]

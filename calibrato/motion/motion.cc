@@ -72,7 +72,10 @@ int NumLoops(Task task) { return task == Task::kIntrinsic ? 4 : 3; }
 
 Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings) {
   // A timed joint path is written for the arm's sake; it follows from the rest and is not read.
-  AppendUnknownKeys(value, {"carrier", "base_pose", "loops", "provenance", "joint_path"}, warnings);
+  AppendUnknownKeys(value,
+                    {"carrier", "base_pose", "loops", "provenance", "scale", "loop_duration_s",
+                     "joint_path_t_s_q_rad"},
+                    warnings);
   Motion motion;
   const Value& carrier = value.At("carrier");
   const std::string carrier_name = carrier.AsString();

@@ -34,8 +34,8 @@ struct Motion {
   Value provenance;  ///< Where it comes from, for people: method, seed, ... null if unknown.
 };
 
-/// MOTION.yaml (formats.md section 3). @throws InputError with line and key: unless there are 1 to
-/// 1000 loops of 36 finite coefficients (|x| <= 10) and positive durations. Unknown keys are
+/// MOTION.yaml (docs/formats.md section 3). @throws InputError with line and key: unless there are
+/// 1 to 1000 loops of 36 finite coefficients (|x| <= 10) and positive durations. Unknown keys are
 /// appended to warnings (may be null).
 [[nodiscard]] Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings);
 [[nodiscard]] Value ToValue(const Motion& motion);

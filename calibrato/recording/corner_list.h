@@ -9,7 +9,7 @@
 
 namespace calibrato {
 
-/// Reads a list of corners (formats.md section 3), plain or gzip:
+/// Reads a list of corners (docs/formats.md section 3), plain or gzip:
 ///
 ///     #timestamp [ns],tag_id,tag_corner,u [px],v [px],x [m],y [m],z [m]
 ///     1404733405732800000,0,0,175.9867,336.8253,0.0,0.0,0.0

@@ -42,7 +42,7 @@ struct RecordingOptions {
 };
 
 /// Opens a folder, its kind recognised from what is in it, in this order:
-/// - corners: cam0_corners.csv[.gz], cam1_corners.csv[.gz], .. (formats.md section 3); their
+/// - corners: cam0_corners.csv[.gz], cam1_corners.csv[.gz], .. (docs/formats.md section 3); their
 ///   resolution from the options, else from `resolution: [width, height]` in cam0_sensor.yaml,
 ///   cam0/sensor.yaml or sensor.yaml (as EuRoC has them), else from camchain.yaml;
 /// - cameras: images in cam0/data/ or cam0/, cam1/data/ or cam1/, ..;

@@ -70,7 +70,7 @@ struct Resolution {
   bool operator==(const Resolution&) const = default;
 };
 
-/// The names of the models (formats.md section 2), in the order of CameraModel::Variant.
+/// The names of the models (docs/formats.md section 2), in the order of CameraModel::Variant.
 inline constexpr std::string_view kCameraModelNames[] = {"pinhole-none", "pinhole-radtan",
                                                          "pinhole-radtan5"};
 

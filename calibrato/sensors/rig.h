@@ -41,8 +41,8 @@ struct Rig {
   CornerNoise corner_noise;
 };
 
-/// RIG.yaml (formats.md section 3). @throws InputError with line and key. Unknown keys are appended
-/// to warnings (may be null).
+/// RIG.yaml (docs/formats.md section 3). @throws InputError with line and key. Unknown keys are
+/// appended to warnings (may be null).
 [[nodiscard]] Rig RigFromValue(const Value& value, std::vector<std::string>* warnings);
 [[nodiscard]] Value ToValue(const Rig& rig);
 

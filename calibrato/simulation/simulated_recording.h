@@ -9,7 +9,7 @@
 namespace calibrato {
 
 /// The files of a simulated recording by name, ready to be written: a folder of corners that opens
-/// like any other, and the truth beside it (formats.md section 3).
+/// like any other, and the truth beside it (docs/formats.md section 3).
 ///
 ///     cam0_corners.csv   sensor.yaml    what the camera saw
 ///     target.yaml        rig.yaml       what it saw it with
