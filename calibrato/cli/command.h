@@ -17,7 +17,7 @@ struct GlobalOptions {
   bool force = false;  ///< Replace what is there.
 };
 
-/// How a command ended; the process's exit code (formats.md section 1).
+/// How a command ended; the process's exit code (docs/formats.md section 1).
 enum ExitCode : int {
   kDone = 0,          ///< Verdict pass or warn.
   kNotTrusted = 1,    ///< Done, but not converged, or verdict fail.

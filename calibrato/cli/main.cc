@@ -5,11 +5,13 @@
 #include <cstdlib>
 #include <exception>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/nearest_name.h"
 #include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
 #include "calibrato/cli/command.h"
@@ -60,7 +62,31 @@ void AddGlobalOptions(CLI::App* app, GlobalOptions* global) {
       ->capture_default_str();
   app->add_flag("--json", global->json, "The result on stdout, nothing else");
   app->add_flag("--quiet", global->quiet, "No progress, no summary");
-  app->add_flag("--force", global->force, "Replace a recording that exists");
+  app->add_flag("--force", global->force, "Replace a recording that exists (simulate)");
+}
+
+// The first word that names no command, with what could stand there; else nothing.
+std::optional<InputError> UnknownCommand(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* group = &app;
+  std::string path = "calibrato";
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    std::vector<std::string> names;
+    const CLI::App* next = nullptr;
+    for (const CLI::App* candidate : group->get_subcommands({})) {
+      names.push_back(candidate->get_name());
+      if (names.back() == argv[i]) next = candidate;
+    }
+    if (names.empty()) return std::nullopt;  // A command: what follows are its own words.
+    if (next == nullptr) {
+      const auto nearest = NearestName(argv[i], names);
+      return InputError(
+          {"unknown command '" + path + " " + argv[i] + "'", "", "",
+           nearest ? "did you mean " + path + " " + *nearest + "?" : "see " + path + " --help"});
+    }
+    group = next;
+    path += " " + std::string(argv[i]);
+  }
+  return std::nullopt;
 }
 
 int Run(int argc, char** argv) {
@@ -90,6 +116,7 @@ int Run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
+    if (const auto unknown = UnknownCommand(app, argc, argv)) throw *unknown;
     std::string hint = "calibrato";
     for (const CLI::App* used = &app; !used->get_subcommands().empty();) {
       used = used->get_subcommands().front();
@@ -100,7 +127,13 @@ int Run(int argc, char** argv) {
   SetNumThreads(global.threads);
   if (global.quiet || global.json) Progress::Silence();
   for (const auto& [leaf, action] : actions) {
-    if (leaf->parsed()) return action();
+    if (!leaf->parsed()) continue;
+    const ExitCode code = action();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      std::fprintf(stderr, "error: cannot print the result, stdout: is its disk full?\n");
+      return kNotTrusted;
+    }
+    return code;
   }
   return kBadInput;
 }

@@ -25,13 +25,15 @@ constexpr size_t kMaxCheckpointBytes = size_t{4} << 30;
 
 std::string CheckpointPath(const std::string& folder) { return folder + "/checkpoint.bin"; }
 
-void MakeFolder(const std::string& folder) {
+// @return Whether it was missing.
+bool MakeFolder(const std::string& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  const bool is_new = std::filesystem::create_directories(folder, error);
   if (!std::filesystem::is_directory(folder)) {
     throw InputError({"cannot make output folder", folder, error ? error.message() : "",
                       "choose another one with --out"});
   }
+  return is_new;
 }
 
 // training.jsonl as it grows: seen by who watches, and complete in every checkpoint.
@@ -398,8 +400,17 @@ LearnResult Learn(const LearnOptions& options, Environment& environment, const s
   const Checkpoint* const start = checkpoint ? &*checkpoint : nullptr;
   const LearnOptions resolved = Resolved(options, start);
   if (start != nullptr) CheckSameCourse(*start, resolved, folder);
-  MakeFolder(folder);
-  return Trainer(resolved, environment, folder, start).Run(interrupt);
+  const bool is_new = MakeFolder(folder);
+  std::optional<Trainer> trainer;
+  try {
+    trainer.emplace(resolved, environment, folder, start);
+  } catch (const InputError&) {
+    // The disk was full before anything was learned: leave nothing behind.
+    std::error_code ignored;
+    if (is_new) std::filesystem::remove_all(folder, ignored);
+    throw;
+  }
+  return trainer->Run(interrupt);
 }
 
 }  // namespace calibrato

@@ -1,0 +1,518 @@
+// Bad input, given to the program itself: exit code 2, one line that says what to do, and nothing
+// written.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calibrato/base/value.h"
+#include "calibrato/cli/program_for_test.h"
+
+namespace calibrato {
+namespace {
+
+constexpr int kBadInput = 2;
+
+std::string InWords(const Arguments& arguments) {
+  std::string text = "calibrato";
+  for (const std::string& word : arguments) text += " " + word;
+  return text;
+}
+
+void ExpectOneErrorLine(const Ended& ended, const std::vector<std::string>& words) {
+  EXPECT_EQ(ended.exit_code, kBadInput) << "signal " << ended.signal;
+  EXPECT_EQ(ended.out, "");
+  EXPECT_TRUE(ended.err.starts_with("error: ")) << ended.err;
+  EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  EXPECT_TRUE(ended.err.ends_with('\n')) << ended.err;
+  for (const std::string& word : words) EXPECT_PRED_FORMAT2(testing::IsSubstring, word, ended.err);
+}
+
+// Appends --out, runs, and expects a refusal that has all these words and leaves nothing there.
+void ExpectRefused(const ScratchFolder& scratch, Arguments arguments,
+                   const std::vector<std::string>& words) {
+  const std::string out = scratch.Path("out");
+  arguments.insert(arguments.end(), {"--out", out});
+  SCOPED_TRACE(InWords(arguments));
+  ExpectOneErrorLine(RunProgram(arguments), words);
+  EXPECT_FALSE(std::filesystem::exists(out)) << "something was written";
+}
+
+struct Squares {
+  int rows;     ///< One more than there are inner corners.
+  int columns;  ///< Likewise.
+};
+
+constexpr Squares kSquares{6, 7};
+
+// A board seen from straight ahead: squares of 40 px, a black one at the top left, white around.
+std::string BoardPgm(int width, int height, Squares squares, int left, int top) {
+  constexpr int kSide = 40;
+  std::string image = "P5\n" + std::to_string(width) + " " + std::to_string(height) + "\n255\n";
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      const int row = (v - top) / kSide;
+      const int column = (u - left) / kSide;
+      const bool is_on_board =
+          v >= top && u >= left && row < squares.rows && column < squares.columns;
+      image += is_on_board && (row + column) % 2 == 0 ? '\x10' : '\xf0';
+    }
+  }
+  return image;
+}
+
+std::string BoardPgm(int left, int top) { return BoardPgm(480, 400, kSquares, left, top); }
+
+std::string TargetYaml(int rows, int columns) {
+  return "target_type: 'checkerboard'\ntargetCols: " + std::to_string(columns) +
+         "\ntargetRows: " + std::to_string(rows) +
+         "\nrowSpacingMeters: 0.03\ncolSpacingMeters: 0.03\n";
+}
+
+std::string TargetYaml() { return TargetYaml(kSquares.rows - 1, kSquares.columns - 1); }
+
+// Photos of one board from three places, and the board's description.
+struct PhotoRecording {
+  ScratchFolder scratch;
+  std::string folder = scratch.MakeFolder("photos");
+  std::string target = scratch.Write("board.yaml", TargetYaml());
+
+  PhotoRecording() {
+    (void)scratch.Write("photos/a.pgm", BoardPgm(50, 50));
+    (void)scratch.Write("photos/b.pgm", BoardPgm(110, 60));
+    (void)scratch.Write("photos/c.pgm", BoardPgm(80, 90));
+  }
+
+  [[nodiscard]] Arguments Calibrate() const {
+    return {"calibrate", "camera", folder, "--target", target};
+  }
+};
+
+struct SimulationInput {
+  ScratchFolder scratch;
+  std::string rig = scratch.Write("rig.yaml", RigYaml());
+  std::string motion = scratch.Write("motion.yaml", MotionYaml(0.1));
+
+  [[nodiscard]] Arguments Simulate() const {
+    return {"simulate", "--rig", rig, "--motion", motion};
+  }
+
+  /// Makes a recording that can be calibrated. Returns its folder.
+  [[nodiscard]] std::string Record() const {
+    const std::string recording = scratch.Path("recording");
+    Arguments arguments = Simulate();
+    arguments.insert(arguments.end(), {"--out", recording});
+    EXPECT_EQ(RunProgram(arguments).exit_code, 0);
+    return recording;
+  }
+};
+
+Arguments With(Arguments arguments, const Arguments& more) {
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+// Recordings --------------------------------------------------------------------------------------
+
+TEST(CalibrateCamera, RefusesAFolderThatIsNotThere) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"calibrate", "camera", scratch.Path("nowhere")},
+                {"nowhere", "no such file or folder"});
+}
+
+TEST(CalibrateCamera, RefusesAnEmptyFolderAndSaysWhatItLookedFor) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"calibrate", "camera", scratch.MakeFolder("empty")},
+                {"empty", "cam0_corners.csv", "png"});
+}
+
+TEST(CalibrateCamera, RefusesImagesWithoutABoard) {
+  const PhotoRecording photos;
+  ExpectRefused(photos.scratch, {"calibrate", "camera", photos.folder}, {"--target"});
+}
+
+TEST(CalibrateCamera, NamesAnImageOfNoBytes) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("photos/b.pgm", "");
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"b.pgm", "empty"});
+}
+
+TEST(CalibrateCamera, NamesATruncatedImage) {
+  const PhotoRecording photos;
+  const std::string whole = BoardPgm(110, 60);
+  (void)photos.scratch.Write("photos/b.pgm", whole.substr(0, whole.size() / 2));
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"b.pgm", "truncated"});
+}
+
+TEST(CalibrateCamera, NamesATruncatedPng) {
+  const PhotoRecording photos;
+  // The first 45 of the 67 bytes of an image of one white pixel: up to amid its pixels.
+  constexpr std::array<unsigned char, 45> kPng = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+      0x52, 0x00, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00, 0x00, 0x3a,
+      0x7e, 0x9b, 0x55, 0x00, 0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8};
+  (void)photos.scratch.Write("photos/d.png", std::string(kPng.begin(), kPng.end()));
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"d.png", "truncated"});
+}
+
+TEST(CalibrateCamera, NamesAnImageThatIsText) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("photos/b.pgm", "this is not an image\n");
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"b.pgm", "image"});
+}
+
+TEST(CalibrateCamera, RefusesBoardsInImagesOfTwoSizes) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("photos/c.pgm", BoardPgm(640, 480, kSquares, 100, 100));
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"c.pgm", "480 x 400", "640 x 480"});
+}
+
+TEST(CalibrateCamera, SaysWhatItSearchedForWhenNoImageShowsABoard) {
+  const PhotoRecording photos;
+  for (const char* name : {"photos/a.pgm", "photos/b.pgm", "photos/c.pgm"}) {
+    (void)photos.scratch.Write(name, BoardPgm(480, 400, {0, 0}, 0, 0));
+  }
+  ExpectRefused(photos.scratch, photos.Calibrate(),
+                {"no board found", "searched 3 images", "5 rows x 6 columns", "--target"});
+}
+
+TEST(CalibrateCamera, SuggestsTheBoardWhenSquaresWereCounted) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("board.yaml", TargetYaml(kSquares.rows, kSquares.columns));
+  ExpectRefused(photos.scratch, photos.Calibrate(),
+                {"searched 3 images", "6 rows x 7 columns", "targetRows: 5", "targetCols: 6",
+                 "inner corners"});
+}
+
+TEST(CalibrateCamera, RefusesFewerThanThreeViews) {
+  const PhotoRecording photos;
+  std::filesystem::remove(photos.folder + "/c.pgm");
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"too few views", "found in 2", "at least 3"});
+}
+
+TEST(CalibrateCamera, CountsViewsNotImages) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("photos/c.pgm", BoardPgm(480, 400, {0, 0}, 0, 0));
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"too few views", "found in 2", "at least 3"});
+}
+
+// Boards ------------------------------------------------------------------------------------------
+
+void ExpectTargetRefused(const std::string& yaml, const std::vector<std::string>& words) {
+  const PhotoRecording photos;
+  (void)photos.scratch.Write("board.yaml", yaml);
+  ExpectRefused(photos.scratch, photos.Calibrate(), words);
+}
+
+TEST(Target, NamesTheNearestKeyOfATypo) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetColls: 6\ntargetRows: 5\nrowSpacingMeters: 0.03\n"
+      "colSpacingMeters: 0.03\n",
+      {"board.yaml", "line 1", "did you mean targetCols where targetColls stands?"});
+}
+
+TEST(Target, NamesAMissingKey) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 5\nrowSpacingMeters: 0.03\n",
+      {"board.yaml", "line 1", "missing key colSpacingMeters"});
+}
+
+TEST(Target, NamesAWrongTypeWithLineAndKey) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetCols: six\ntargetRows: 5\nrowSpacingMeters: 0.03\n"
+      "colSpacingMeters: 0.03\n",
+      {"board.yaml", "line 2", "targetCols", "whole number", "six"});
+}
+
+TEST(Target, NamesANegativeSizeWithLineAndKey) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: 5\nrowSpacingMeters: -0.03\n"
+      "colSpacingMeters: 0.03\n",
+      {"board.yaml", "line 4", "rowSpacingMeters", "-0.03"});
+}
+
+TEST(Target, NamesANegativeNumberOfCornersWithLineAndKey) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetCols: 6\ntargetRows: -5\nrowSpacingMeters: 0.03\n"
+      "colSpacingMeters: 0.03\n",
+      {"board.yaml", "line 3", "targetRows", "-5"});
+}
+
+TEST(Target, NamesTheLineOfTextThatIsNotYaml) {
+  ExpectTargetRefused("target_type: 'checkerboard'\ntargetCols: [6\ntargetRows: }{\n",
+                      {"board.yaml", "line 3"});
+}
+
+TEST(Target, RefusesAFileThatIsNotThere) {
+  const PhotoRecording photos;
+  std::filesystem::remove(photos.target);
+  ExpectRefused(photos.scratch, photos.Calibrate(), {"board.yaml", "no such file"});
+}
+
+// Where results go --------------------------------------------------------------------------------
+
+TEST(OutputFolder, BelowAFileIsRefused) {
+  const PhotoRecording photos;
+  const std::string out = photos.target + "/below";
+  ExpectOneErrorLine(RunProgram(With(photos.Calibrate(), {"--out", out})),
+                     {"board.yaml", "is a file, not a folder"});
+  EXPECT_EQ(ContentOf(photos.target), TargetYaml());
+}
+
+TEST(OutputFolder, ThatIsAFileIsRefused) {
+  const PhotoRecording photos;
+  ExpectOneErrorLine(RunProgram(With(photos.Calibrate(), {"--out", photos.target})),
+                     {"board.yaml", "is a file, not a folder"});
+  EXPECT_EQ(ContentOf(photos.target), TargetYaml());
+}
+
+TEST(OutputFolder, InAReadOnlyFolderIsRefused) {
+  if (geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
+  namespace fs = std::filesystem;
+  const PhotoRecording photos;
+  const std::string locked = photos.scratch.MakeFolder("locked");
+  fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec);
+  const std::string out = locked + "/out";
+  ExpectOneErrorLine(RunProgram(With(photos.Calibrate(), {"--out", out})), {"locked"});
+  EXPECT_FALSE(fs::exists(out));
+  fs::permissions(locked, fs::perms::owner_all);
+}
+
+void ExpectRefusedByAFullDisk(const ScratchFolder& scratch, const Arguments& command) {
+  constexpr rlim_t kMaxFileBytes = 1000;
+  const std::string out = scratch.Path("out");
+  SCOPED_TRACE(InWords(command));
+  ExpectOneErrorLine(RunProgram(With(command, {"--out", out}), kMaxFileBytes),
+                     {"cannot write file", "out"});
+  EXPECT_FALSE(std::filesystem::exists(out)) << "something was written";
+}
+
+TEST(FullDisk, LeavesNothingOfACalibration) {
+  const SimulationInput input;
+  ExpectRefusedByAFullDisk(input.scratch, {"calibrate", "camera", input.Record()});
+}
+
+TEST(FullDisk, LeavesNothingOfASimulation) {
+  const SimulationInput input;
+  ExpectRefusedByAFullDisk(input.scratch, input.Simulate());
+}
+
+TEST(FullDisk, LeavesNothingOfAnEvaluation) {
+  const ScratchFolder scratch;
+  ExpectRefusedByAFullDisk(scratch, {"evaluate", "table1", "--num-rigs", "2"});
+}
+
+TEST(FullDisk, LeavesNothingOfLearning) {
+  const ScratchFolder scratch;
+  ExpectRefusedByAFullDisk(scratch, {"learn", "intrinsic", "--episodes", "2"});
+}
+
+TEST(FullDisk, LeavesAnEarlierResultAsItWas) {
+  constexpr rlim_t kMaxFileBytes = 1000;
+  const SimulationInput input;
+  const std::string out = input.scratch.Path("out");
+  const Arguments calibrate = {"calibrate", "camera", input.Record(), "--out", out};
+  ASSERT_LE(RunProgram(calibrate).exit_code, 1);
+  const auto before = FilesBelow(out);
+  ASSERT_TRUE(before.count("result.json"));
+  ExpectOneErrorLine(RunProgram(With(calibrate, {"--model", "pinhole-none"}), kMaxFileBytes),
+                     {"cannot write file"});
+  EXPECT_TRUE(FilesBelow(out) == before);
+}
+
+// Words -------------------------------------------------------------------------------------------
+
+TEST(CommandLine, NamesAnUnknownModelAndThoseThereAre) {
+  const PhotoRecording photos;
+  ExpectRefused(photos.scratch, With(photos.Calibrate(), {"--model", "pinhole-radtn"}),
+                {"pinhole-radtn", "pinhole-radtan"});
+}
+
+TEST(CommandLine, NamesAnUnknownParameterToFixAndThoseThereAre) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, {"calibrate", "camera", input.Record(), "--fix", "k1,k9"},
+                {"'k9'", "fu", "k1"});
+}
+
+TEST(CommandLine, NamesAnUnknownOption) {
+  const PhotoRecording photos;
+  ExpectRefused(photos.scratch, With(photos.Calibrate(), {"--bogus"}),
+                {"--bogus", "calibrato calibrate camera --help"});
+}
+
+TEST(CommandLine, NamesAMissingOption) {
+  const PhotoRecording photos;
+  ExpectOneErrorLine(RunProgram(photos.Calibrate()),
+                     {"--out", "calibrato calibrate camera --help"});
+  ExpectRefused(photos.scratch, {"simulate", "--rig", photos.target},
+                {"--motion", "calibrato simulate --help"});
+}
+
+TEST(CommandLine, NamesAValueThatIsNoNumber) {
+  const PhotoRecording photos;
+  ExpectRefused(photos.scratch, With(photos.Calibrate(), {"--seed", "many"}), {"--seed", "many"});
+  ExpectRefused(photos.scratch, With(photos.Calibrate(), {"--threads", "-4"}), {"--threads", "-4"});
+}
+
+TEST(CommandLine, NamesAnUnknownCommand) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"kalibrate", "camera"}, {"kalibrate", "calibrato --help"});
+  ExpectRefused(scratch, {"calibrate", "lens"}, {"lens", "calibrato calibrate --help"});
+}
+
+TEST(CommandLine, AsksForACommand) { ExpectOneErrorLine(RunProgram({}), {"calibrato --help"}); }
+
+// Simulation --------------------------------------------------------------------------------------
+
+TEST(Simulate, NamesTheLimitAndTheWayPointThatDoNotFit) {
+  const SimulationInput input;
+  (void)input.scratch.Write("motion.yaml", MotionYaml(1.0));
+  ExpectRefused(input.scratch, input.Simulate(),
+                {"motion.yaml", "reach from the shoulder", "loop 1, way-point", "0.75 m",
+                 "of 62 way-points", "--scale-to-fit"});
+}
+
+TEST(Simulate, NamesAFidelityThatIsNotThere) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--fidelity", "rendered"}),
+                {"rendered", "--fidelity fast"});
+}
+
+TEST(Simulate, NamesAnUnknownCarrier) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--carrier", "crane"}),
+                {"crane", "free", "arm"});
+}
+
+TEST(Simulate, NamesAMistakeInTheMotion) {
+  const SimulationInput input;
+  std::string text = MotionYaml(0.1);
+  text.replace(text.find("duration_s: 5.0"), 15, "duration_s: 0.0");
+  (void)input.scratch.Write("motion.yaml", text);
+  ExpectRefused(input.scratch, input.Simulate(), {"motion.yaml", "line 6", "duration_s"});
+}
+
+TEST(Simulate, ReplacesNoFolderUnasked) {
+  const SimulationInput input;
+  const std::string precious = input.scratch.Write("recording/precious.txt", "mine");
+  const std::string out = input.scratch.Path("recording");
+  ExpectOneErrorLine(RunProgram(With(input.Simulate(), {"--out", out})), {"recording", "--force"});
+  EXPECT_EQ(FilesBelow(out).size(), 1U);
+  EXPECT_EQ(ContentOf(precious), "mine");
+  EXPECT_EQ(RunProgram(With(input.Simulate(), {"--out", out, "--force"})).exit_code, 0);
+  EXPECT_GT(FilesBelow(out).size(), 1U);
+}
+
+// Learning, evaluation, report --------------------------------------------------------------------
+
+TEST(Learn, ResumesNothingWithoutACheckpoint) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"learn", "intrinsic", "--episodes", "8", "--resume"},
+                {"nothing to resume", "checkpoint.bin", "--resume"});
+}
+
+TEST(Learn, NamesATaskThatIsNotThere) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"learn", "extrinsic"}, {"extrinsic", "learn intrinsic"});
+  ExpectRefused(scratch, {"learn", "knitting"}, {"knitting"});
+}
+
+TEST(Learn, NamesRigsThatAreNotThere) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch, {"learn", "intrinsic", "--rigs", "nowhere.yaml"}, {"nowhere.yaml"});
+}
+
+TEST(Evaluate, RefusesAFolderWithoutAPolicy) {
+  const ScratchFolder scratch;
+  ExpectRefused(scratch,
+                {"evaluate", "table1", "--num-rigs", "2", "--policy", scratch.MakeFolder("empty")},
+                {"no policy", "empty", "calibrato learn"});
+}
+
+TEST(Report, RefusesAnEmptyFolderAndWritesNothingThere) {
+  const ScratchFolder scratch;
+  const std::string empty = scratch.MakeFolder("empty");
+  ExpectOneErrorLine(RunProgram({"report", empty}), {"nothing to report", "empty", "result.json"});
+  EXPECT_TRUE(FilesBelow(empty).empty());
+}
+
+// What works --------------------------------------------------------------------------------------
+
+TEST(CommandLine, HelpOfEveryCommandNamesItsOptions) {
+  const std::vector<std::pair<Arguments, std::vector<std::string>>> commands = {
+      {{}, {"--version", "calibrate", "simulate", "learn", "evaluate", "report"}},
+      {{"calibrate"}, {"camera"}},
+      {{"calibrate", "camera"},
+       {"recording", "--target", "--images", "--model", "--resolution", "--fix", "--select",
+        "--out"}},
+      {{"simulate"}, {"--rig", "--motion", "--carrier", "--fidelity", "--scale-to-fit", "--out"}},
+      {{"learn"},
+       {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--episodes", "--resume",
+        "--out"}},
+      {{"evaluate"}, {"table1"}},
+      {{"evaluate", "table1"},
+       {"--task", "--policy", "--motion", "--carrier", "--fidelity", "--rigs", "--num-rigs",
+        "--quick", "--out"}},
+      {{"report"}, {"folder"}}};
+  for (const auto& [command, names] : commands) {
+    SCOPED_TRACE(InWords(command));
+    const Ended ended = RunProgram(With(command, {"--help"}));
+    EXPECT_EQ(ended.exit_code, 0);
+    EXPECT_EQ(ended.err, "");
+    for (const std::string& name : names)
+      EXPECT_PRED_FORMAT2(testing::IsSubstring, name, ended.out);
+    const bool is_group = command.empty() || (names.size() == 1 && command[0] != "report");
+    if (is_group) continue;
+    for (const char* name : {"--seed", "--threads", "--json", "--quiet", "--force"}) {
+      EXPECT_PRED_FORMAT2(testing::IsSubstring, name, ended.out);
+    }
+  }
+}
+
+// Parses strictly: anything before, between or after the document is an error.
+void ExpectJson(const Arguments& arguments, const std::string& kind) {
+  SCOPED_TRACE(InWords(arguments));
+  const Ended ended = RunProgram(With(arguments, {"--json"}));
+  EXPECT_LE(ended.exit_code, 1);
+  EXPECT_GE(ended.exit_code, 0);
+  try {
+    EXPECT_EQ(ParseJson(ended.out, "stdout").At("kind").AsString(), kind);
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << error.what() << "\n" << ended.out;
+  }
+}
+
+TEST(CommandLine, JsonIsAllThatIsOnStdout) {
+  const SimulationInput input;
+  const auto out = [&](const std::string& name) { return input.scratch.Path(name); };
+  ExpectJson(With(input.Simulate(), {"--out", out("recording")}), "simulation");
+  ExpectJson({"calibrate", "camera", out("recording"), "--out", out("camera")}, "camera");
+  ExpectJson({"evaluate", "table1", "--num-rigs", "2", "--out", out("table")}, "table1");
+  ExpectJson({"learn", "intrinsic", "--episodes", "2", "--out", out("learned")}, "learn");
+  ExpectJson({"report", out("table")}, "report");
+}
+
+TEST(CommandLine, JsonIsTheResultThatIsWritten) {
+  const SimulationInput input;
+  const std::string out = input.scratch.Path("camera");
+  const Ended ended = RunProgram({"calibrate", "camera", input.Record(), "--json", "--out", out});
+  EXPECT_NE(ended.out, "");
+  EXPECT_EQ(ended.out, ContentOf(out + "/result.json"));
+}
+
+TEST(CommandLine, QuietSaysNothing) {
+  const SimulationInput input;
+  const std::string out = input.scratch.Path("out");
+  const Ended ended = RunProgram(With(input.Simulate(), {"--quiet", "--out", out}));
+  EXPECT_EQ(ended.exit_code, 0);
+  EXPECT_EQ(ended.out + ended.err, "");
+  EXPECT_TRUE(std::filesystem::exists(out + "/cam0_corners.csv"));
+}
+
+}  // namespace
+}  // namespace calibrato
