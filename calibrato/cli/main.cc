@@ -79,9 +79,9 @@ std::optional<InputError> UnknownCommand(const CLI::App& app, int argc, char** a
     if (names.empty()) return std::nullopt;  // A command: what follows are its own words.
     if (next == nullptr) {
       const auto nearest = NearestName(argv[i], names);
-      return InputError(
-          {"unknown command '" + path + " " + argv[i] + "'", "", "",
-           nearest ? "did you mean " + path + " " + *nearest + "?" : "see " + path + " --help"});
+      const std::string guess = nearest ? "did you mean " + path + " " + *nearest + "? " : "";
+      return InputError({"unknown command '" + path + " " + argv[i] + "'", "", "",
+                         guess + "see " + path + " --help"});
     }
     group = next;
     path += " " + std::string(argv[i]);
