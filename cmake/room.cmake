@@ -13,9 +13,14 @@ function(calibrato_add_room name)
     target_link_libraries(calibrato_${name} PUBLIC calibrato_${room})
   endforeach()
   target_link_libraries(calibrato_${name} PRIVATE ${ROOM_HEAVY})
+  # libtorch's flags differ from everyone else's.
+  if(NOT torch IN_LIST ROOM_HEAVY)
+    calibrato_precompile(calibrato_${name} calibrato_precompiled)
+  endif()
   if(CALIBRATO_TESTS AND ROOM_TESTS)
     add_executable(${name}_test ${ROOM_TESTS})
     target_link_libraries(${name}_test PRIVATE calibrato_${name} GTest::gtest_main)
+    calibrato_precompile(${name}_test calibrato_precompiled_for_tests)
     gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST
                          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
                          PROPERTIES LABELS "${name}" TIMEOUT 1200)
