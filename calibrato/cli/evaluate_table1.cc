@@ -85,10 +85,11 @@ Action SetUpEvaluateTable1(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
   app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
   app.add_option("--rigs", options->rigs, "paper or paper-undistorted")->capture_default_str();
-  app.add_option("--num-rigs", options->num_rigs, "How many rigs each policy is tried on")
-      ->check(CLI::Range(2, 1000000))
-      ->capture_default_str();
-  app.add_flag("--quick", options->quick, "100 rigs");
+  CLI::Option* num_rigs =
+      app.add_option("--num-rigs", options->num_rigs, "How many rigs each policy is tried on")
+          ->check(CLI::Range(2, 1000000))
+          ->capture_default_str();
+  app.add_flag("--quick", options->quick, "100 rigs")->excludes(num_rigs);
   app.add_option("--out", options->out, "Folder for the result")->required();
   return [options, &global] { return RunEvaluateTable1(*options, global); };
 }

@@ -5,6 +5,12 @@
 #include "calibrato/learning/networks.h"
 #include "calibrato/learning/swarm.h"
 
+// To add a planner:
+//   1. write its search beside swarm.h: from predicted returns to sequences, best first;
+//   2. give it a name in PlanningOptions, by which PlanAction calls it instead of the swarm;
+//   3. write its options into policy.cc, so that a policy says how it plans;
+//   4. add it to the tests of mpc_test.cc: every planner finds the best of a known return.
+
 namespace calibrato {
 
 /// Model predictive control (paper, section 3.3).
