@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "calibrato/calibration/bundle_adjustment.h"
 #include "calibrato/calibration/coverage.h"
 #include "calibrato/calibration/information.h"
+#include "calibrato/calibration/rejection.h"
 #include "calibrato/calibration/termination.h"
+#include "calibrato/geometry/rigid3.h"
 #include "calibrato/sensors/camera_model.h"
 #include "calibrato/sensors/measurements.h"
 
@@ -26,6 +27,9 @@ struct CameraProblem {
   /// size.
   std::vector<bool> fixed;
   Eigen::VectorXd known;  ///< NaN where not known; else used as the start value.
+  /// Whether corners and views that do not fit are left out (outliers.h). Where all of them fit,
+  /// the result is that of plain least squares.
+  bool reject_outliers = true;
 };
 
 /// Which parameters to hold, from their names: distortion at 0, and intrinsics at their start
@@ -38,22 +42,28 @@ struct CameraCalibration {
   Termination termination = Termination::kNoStart;
   std::optional<CameraModel> model;         ///< The estimate; none without start values.
   std::vector<Rigid3> T_c_g;                ///< Board poses, one a used view.
-  std::vector<BoardView> used_views;        ///< Those that could be started.
+  std::vector<BoardView> used_views;        ///< Those that fit, without their rejected corners.
+  std::vector<size_t> used_view_indices;    ///< Their places in problem.views, ascending.
   std::vector<Eigen::Matrix2Xd> residuals;  ///< Predicted - measured, one a used view [px].
-  int num_corners = 0;                      ///< In the used views.
-  double reprojection_rms_px = 0.0;         ///< sqrt(sum(du^2 + dv^2) / num_corners).
+  std::vector<RejectedCorner> rejected_corners;  ///< Of used views.
+  std::vector<RejectedView> rejected_views;
+  int num_corners = 0;               ///< In the used views, without rejected ones.
+  double reprojection_rms_px = 0.0;  ///< sqrt(sum(du^2 + dv^2) / num_corners).
+  /// The same over all corners that project, those of rejected views from their best pose [px].
+  double reprojection_rms_all_px = 0.0;
   /// Of one coordinate, from the residuals and the degrees of freedom they have left [px].
   double noise_stddev_px = 0.0;
   /// Marginal covariance of all parameters with the poses unknown, scaled by the estimated noise;
   /// zero rows and columns for those that were held. Empty unless it exists.
   Eigen::MatrixXd covariance;
   Information information;  ///< Of fu fv pu pv; set where the covariance is.
-  Coverage coverage;
+  Coverage coverage;        ///< Of all views of the problem.
 };
 
-/// Calibrates from nothing but the views: start values, bundle adjustment, covariance.
+/// Calibrates from nothing but the views: start values, bundle adjustment, covariance. For several
+/// cameras, or a board that may be bent, see camera_rig_calibration.h.
 /// @throws InputError if a view's points do not lie in the plane z = 0, or no view is given.
 [[nodiscard]] CameraCalibration CalibrateCamera(const CameraProblem& problem,
-                                                int max_iterations = 100);
+                                                int max_iterations = 200);
 
 }  // namespace calibrato

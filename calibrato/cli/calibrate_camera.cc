@@ -5,14 +5,15 @@
 #include <vector>
 
 #include "calibrato/base/input_error.h"
-#include "calibrato/calibration/camera_calibration.h"
+#include "calibrato/calibration/camera_rig_calibration.h"
+#include "calibrato/cli/board_views.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/output.h"
 #include "calibrato/cli/parse.h"
-#include "calibrato/detection/detect.h"
 #include "calibrato/diagnosis/camera_diagnosis.h"
 #include "calibrato/diagnosis/camera_document.h"
-#include "calibrato/recording/photo.h"
+#include "calibrato/diagnosis/detection_findings.h"
+#include "calibrato/diagnosis/frame_selection.h"
 #include "calibrato/recording/recording.h"
 #include "calibrato/sensors/camera_chain.h"
 
@@ -27,66 +28,53 @@ struct Options {
   std::string resolution;
   std::vector<std::string> fixed;
   std::string select = "all";
+  bool estimate_bending = false;
+  bool keep_outliers = false;
+  RecordingWindow window;
   std::string out;
 };
 
-struct CameraViews {
-  std::vector<BoardView> views;
-  Resolution resolution;
-  std::vector<std::string> images_without_board;
-};
+void CheckOptions(const Options& options) {
+  for (const std::string& model : options.models) (void)CameraModel::NumParameters(model);
+  if (options.window.every < 1) {
+    throw InputError({"--every " + std::to_string(options.window.every), "",
+                      "at least every first frame is used", "give 1 or more"});
+  }
+}
 
-CameraViews FindViews(const CameraRecording& camera, const std::optional<Board>& board) {
-  if (const auto* views = std::get_if<std::vector<BoardView>>(&camera.data)) {
-    if (!camera.resolution) {
-      throw InputError({"unknown image size", camera.name, "a list of corners does not tell it",
-                        "give --resolution WIDTHxHEIGHT or a sensor.yaml"});
+CameraRigProblem MakeProblem(std::vector<CameraViews>* found, const Options& options) {
+  CameraRigProblem problem;
+  problem.estimate_bending = options.estimate_bending;
+  for (size_t c = 0; c < found->size(); ++c) {
+    CameraViews& camera = (*found)[c];
+    if (camera.views.size() < static_cast<size_t>(kMinViews)) {
+      throw InputError({"too few views", "cam" + std::to_string(c),
+                        "the board was found in " + std::to_string(camera.views.size()) +
+                            ", at least " + std::to_string(kMinViews) + " are needed",
+                        "take more photos of the board, about twenty"});
     }
-    return {*views, *camera.resolution, {}};
+    CameraProblem one;
+    one.model = options.models.size() == 1 ? options.models[0] : options.models[c];
+    one.resolution = camera.resolution;
+    one.views = std::move(camera.views);
+    one.reject_outliers = !options.keep_outliers;
+    HoldParameters(options.fixed, &one);
+    problem.cameras.push_back(std::move(one));
+    problem.frame_of_view.push_back(std::move(camera.frame_of_view));
   }
-  const auto& images = std::get<std::vector<ImageFile>>(camera.data);
-  if (!board) {
-    throw InputError({"no board given", camera.name, "images are searched for a known board",
-                      "give --target board.yaml"});
-  }
-  ImageSource source;
-  for (const ImageFile& image : images) {
-    source.names.push_back(image.name);
-    source.stamps.push_back(image.stamp);
-  }
-  source.load = [&](size_t k) { return ReadPhoto(images[k].path); };
-  Detections detections = DetectBoards(source, *board);
-  return {std::move(detections.views), detections.resolution,
-          std::move(detections.images_without_board)};
+  return problem;
 }
 
-CameraReportCard Calibrate(size_t index, CameraViews found, const Options& options) {
-  if (found.views.size() < static_cast<size_t>(kMinViews)) {
-    throw InputError({"too few views", "cam" + std::to_string(index),
-                      "the board was found in " + std::to_string(found.views.size()) +
-                          ", at least " + std::to_string(kMinViews) + " are needed",
-                      "take more photos of the board, about twenty"});
-  }
-  CameraReportCard card;
-  card.name = "cam" + std::to_string(index);
-  card.problem.model = options.models.size() == 1 ? options.models[0] : options.models.at(index);
-  card.problem.resolution = found.resolution;
-  card.problem.views = std::move(found.views);
-  card.images_without_board = std::move(found.images_without_board);
-  HoldParameters(options.fixed, &card.problem);
-  card.calibration = CalibrateCamera(card.problem);
-  card.findings = DiagnoseCamera(card.problem, card.calibration);
-  return card;
-}
-
-std::string CameraChainYaml(const std::vector<CameraReportCard>& cameras) {
+std::string CameraChainYaml(const CameraRigReport& report) {
   std::vector<Camera> chain;
   std::string notes;
-  for (const CameraReportCard& card : cameras) {
-    if (!card.calibration.model) return "";
-    chain.push_back({*card.calibration.model, card.problem.resolution,
-                     "/" + card.name + "/image_raw", std::nullopt});
-    if (card.problem.model == "pinhole-radtan5") {
+  for (size_t c = 0; c < report.cameras.size(); ++c) {
+    const CameraCalibration& calibration = report.calibration.cameras[c];
+    if (!calibration.model) return "";
+    chain.push_back({*calibration.model, report.problem.cameras[c].resolution,
+                     "/" + report.cameras[c].name + "/image_raw",
+                     c == 0 ? std::nullopt : report.calibration.T_cn_cnm1[c - 1]});
+    if (calibration.model->name() == "pinhole-radtan5") {
       notes =
           "# distortion_model radtan5 (k1 k2 p1 p2 k3) is calibrato's; Kalibr does not know it.\n";
     }
@@ -94,77 +82,120 @@ std::string CameraChainYaml(const std::vector<CameraReportCard>& cameras) {
   return notes + ToYaml(ToValue(chain));
 }
 
+// Detection's notes and what the views say; a model's failure to fit is the diagnosis's.
+CameraRigReport MakeReport(CameraRigProblem problem, const std::vector<CameraViews>& found,
+                           std::vector<Finding> findings) {
+  CameraRigReport report;
+  report.calibration = CalibrateCameraRig(problem);
+  report.findings = RigFindings(report.calibration);
+  report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+  for (size_t c = 0; c < found.size(); ++c) {
+    CameraReportCard card;
+    card.name = "cam" + std::to_string(c);
+    card.diagnosis = DiagnoseCamera(problem.cameras[c], report.calibration.cameras[c]);
+    card.images_without_board = found[c].images_without_board;
+    card.detection_rejected = found[c].rejected;
+    for (Finding& finding : FindingsOnDetection(found[c].rejected)) {
+      card.diagnosis.findings.push_back(std::move(finding));
+    }
+    if (found[c].is_numbered_by_continuity) {
+      card.diagnosis.findings.push_back(
+          {Severity::kInfo,
+           "the board looks the same from several sides: its corners are numbered so that they "
+           "move "
+           "least from one image to the next",
+           "for a frame that does not depend on that, use a board with an odd sum of rows and "
+           "columns"});
+    }
+    report.cameras.push_back(std::move(card));
+  }
+  report.problem = std::move(problem);
+  return report;
+}
+
 ExitCode RunCalibrateCamera(const Options& options, const GlobalOptions& global) {
   Stopwatch stopwatch;
   OutputFolder out(options.out);
-  if (options.select != "all") {
-    throw InputError({"--select " + options.select + " is not in this version", "", "",
-                      "leave it out: all views are used"});
-  }
-  for (const std::string& model : options.models) (void)CameraModel::NumParameters(model);
+  CheckOptions(options);
+  const FrameSelection selection = FrameSelectionFromName(options.select);
   std::vector<std::string> warnings;
   std::optional<Board> board;
   RecordingOptions recording_options;
+  recording_options.with_imus = false;
   if (!options.target.empty()) {
     board = BoardFromValue(ReadYaml(options.target), &warnings);
     recording_options.board_points_g = BoardPoints(*board);
   }
   recording_options.image_globs = options.images;
-  if (!options.resolution.empty())
+  if (!options.resolution.empty()) {
     recording_options.resolution = ParseResolution(options.resolution);
+  }
   const Recording recording = OpenRecording(options.recording, recording_options);
-  const size_t num_cameras = recording.cameras.size();
-  if (options.models.size() != 1 && options.models.size() != num_cameras) {
+  if (options.models.size() != 1 && options.models.size() != recording.cameras.size()) {
     throw InputError({"wrong number of --model", options.recording,
                       std::to_string(options.models.size()) + " models for " +
-                          std::to_string(num_cameras) + " cameras",
+                          std::to_string(recording.cameras.size()) + " cameras",
                       "give one for all, or one each"});
   }
   PrintWarnings(warnings);
 
-  std::vector<CameraReportCard> cards;
-  for (size_t c = 0; c < num_cameras; ++c) {
-    stopwatch.Start("detection_s");
-    CameraViews found = FindViews(recording.cameras[c], board);
-    stopwatch.Start("solve_s");
-    cards.push_back(Calibrate(c, std::move(found), options));
-  }
+  stopwatch.Start("detection_s");
+  std::vector<CameraViews> found = FindBoardViews(recording, board, options.window);
+  stopwatch.Start("solve_s");
+  CameraRigProblem problem = MakeProblem(&found, options);
+  std::vector<Finding> findings = SelectFrames(selection, &problem);
+  const CameraRigReport report = MakeReport(std::move(problem), found, std::move(findings));
 
-  const Value result = CameraResult(cards);
+  const Value result = CameraResult(report);
   // One camera's pictures are one object; of several, each its own.
   Value plots = Value::Object();
-  plots.Set("plots", CameraPlots(cards.front()));
-  for (size_t c = 1; c < cards.size(); ++c) {
-    plots.Set("plots_" + cards[c].name, CameraPlots(cards[c]));
+  plots.Set("plots", CameraPlots(report, 0));
+  for (size_t c = 1; c < report.cameras.size(); ++c) {
+    plots.Set("plots_" + report.cameras[c].name, CameraPlots(report, c));
   }
-  const std::string chain = CameraChainYaml(cards);
+  const std::string chain = CameraChainYaml(report);
   if (!chain.empty()) out.Add("camchain.yaml", chain);
   CommitResult("Camera calibration", result, plots, &stopwatch, &out);
   if (global.json) {
     std::fputs(ToJson(result).c_str(), stdout);
   } else if (!global.quiet) {
-    std::printf("%sreport: %s/report.html\n", CameraText(cards).c_str(), options.out.c_str());
+    std::printf("%sreport: %s/report.html\n", CameraText(report).c_str(), options.out.c_str());
   }
-  return VerdictOf(cards) == Verdict::kFail ? kNotTrusted : kDone;
+  return VerdictOf(report) == Verdict::kFail ? kNotTrusted : kDone;
 }
 
 }  // namespace
 
 Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global) {
   auto options = std::make_shared<Options>();
+  std::string models;
+  for (const std::string_view name : kCameraModelNames) {
+    models += (models.empty() ? "" : ", ") + std::string(name);
+  }
   app.add_option("recording", options->recording,
-                 "Folder of photos, or of corner lists (cam0_corners.csv)")
+                 "Folder of photos, of cameras' images, or of corner lists (cam0_corners.csv)")
       ->required();
   app.add_option("--target", options->target, "The board: Kalibr's target YAML");
   app.add_option("--images", options->images, "Which photos, as a glob; once a camera");
-  app.add_option("--model", options->models,
-                 "pinhole-none, pinhole-radtan or pinhole-radtan5; one for all or one a camera")
+  app.add_option("--model", options->models, "One for all or one a camera, of " + models)
       ->capture_default_str();
   app.add_option("--resolution", options->resolution, "WIDTHxHEIGHT, for corner lists");
   app.add_option("--fix", options->fixed,
                  "Parameters to hold, as p1,p2: distortion at 0, intrinsics at their start value")
       ->delimiter(',');
-  app.add_option("--select", options->select, "Which views: all")->capture_default_str();
+  app.add_option(
+         "--select", options->select,
+         "Which views: all, coverage (new ones, as in the paper) or information (until more "
+         "would not help)")
+      ->capture_default_str();
+  app.add_flag("--estimate-bending", options->estimate_bending,
+               "Allow for a board that is not flat");
+  app.add_flag("--keep-outliers", options->keep_outliers,
+               "Use all corners, by plain least squares");
+  app.add_option("--from", options->window.from_s, "Begin so late in the recording [s]");
+  app.add_option("--to", options->window.to_s, "End so late in the recording [s]");
+  app.add_option("--every", options->window.every, "Use one frame in so many")
+      ->capture_default_str();
   app.add_option("--out", options->out, "Folder for the result")->required();
   return [options, &global] { return RunCalibrateCamera(*options, global); };
 }

@@ -35,9 +35,12 @@ using SetUp = Action (*)(CLI::App& app, const GlobalOptions& global);
 // To add a command: its set-up in a file of its own, its line here, its row in the table of
 // main.cc.
 Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global);
+Action SetUpCalibrateCameraImu(CLI::App& app, const GlobalOptions& global);
+Action SetUpBoard(CLI::App& app, const GlobalOptions& global);
 Action SetUpSimulate(CLI::App& app, const GlobalOptions& global);
 Action SetUpLearn(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateTable1(CLI::App& app, const GlobalOptions& global);
+Action SetUpDiff(CLI::App& app, const GlobalOptions& global);
 Action SetUpReport(CLI::App& app, const GlobalOptions& global);
 
 /// Set once SIGINT or SIGTERM came; only commands that save their state look at it. See main.cc.

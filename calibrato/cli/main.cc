@@ -29,11 +29,18 @@ const std::vector<Command> kCommands = {
     {{"calibrate", "camera"},
      "Intrinsics of a camera from photos or corners",
      SetUpCalibrateCamera},
+    {{"calibrate", "camera-imu"},
+     "Pose and time offset between cameras and an IMU",
+     SetUpCalibrateCameraImu},
+    {{"board"}, "Draw a board to be printed at its true size", SetUpBoard},
     {{"simulate"}, "A recording of a simulated rig, with its truth", SetUpSimulate},
     {{"learn"}, "Learn a calibration motion", SetUpLearn},
     {{"evaluate", "table1"},
      "Learned, handcrafted and random motions on rigs never trained on",
      SetUpEvaluateTable1},
+    {{"diff"},
+     "Whether two calibrations of the same cameras differ, and by how many pixels",
+     SetUpDiff},
     {{"report"}, "Write report.html anew from the results in a folder", SetUpReport},
 };
 

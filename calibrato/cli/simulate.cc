@@ -10,6 +10,7 @@
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
 #include "calibrato/simulation/fast_simulation.h"
+#include "calibrato/simulation/imu_simulation.h"
 #include "calibrato/simulation/simulated_recording.h"
 
 namespace calibrato {
@@ -58,7 +59,9 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
                       std::to_string(frames.num_frames) + " frames were taken",
                       "check T_w_g and T_e_c0 of the rig"});
   }
-  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, frames)) {
+  Rng imu_noise = Rng(global.seed).Stream("simulate imu");
+  const SimulatedImu imu = SimulateImu(rig, timed, kSimulationStart, imu_noise);
+  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, frames, imu)) {
     out.Add(name, content);
   }
   out.Commit();
@@ -69,6 +72,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       .Set("num_views", frames.views.size())
       .Set("num_out_of_image", frames.num_out_of_image)
       .Set("num_lost_to_blur", frames.num_lost_to_blur)
+      .Set("num_imu_samples", imu.stream.gyro.size())
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
       .Set("path_length_m", PathLength(timed.motion));

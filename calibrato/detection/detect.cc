@@ -9,7 +9,12 @@
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
+#include "calibrato/detection/board_symmetry.h"
+#include "calibrato/detection/find_april_grid.h"
+#include "calibrato/detection/find_charuco.h"
 #include "calibrato/detection/find_checkerboard.h"
+#include "calibrato/detection/find_circle_grid.h"
+#include "calibrato/detection/similar_board.h"
 
 namespace calibrato {
 namespace {
@@ -17,36 +22,41 @@ namespace {
 // How many images are searched for another board when the board was in none.
 constexpr size_t kImagesSearchedAgain = 5;
 
-// Boards that people mean when they write another one: squares counted instead of inner corners,
-// one row or column too many or too few. (Rows and columns swapped is the same board seen from
-// another side, and is found.) Larger ones first, since a smaller one may be found as a part of
-// one.
-std::vector<Board> SimilarBoards(const Board& board) {
-  const auto& written = std::get<Checkerboard>(board);
-  std::vector<Board> similar;
-  for (const auto& [more_rows, more_columns] :
-       {std::pair(-1, -1), std::pair(1, 1), std::pair(1, 0), std::pair(0, 1), std::pair(-1, 0),
-        std::pair(0, -1)}) {
-    Checkerboard other = written;
-    other.rows += more_rows;
-    other.columns += more_columns;
-    if (other.rows >= 3 && other.columns >= 3) similar.emplace_back(other);
+struct Finder {
+  const GreyImage& image;
+  RejectionCounts* rejected;
+
+  std::optional<BoardView> operator()(const Checkerboard& board) const {
+    RefuseBelowThree(board.rows, board.columns, board);
+    return FindCheckerboard(image, board, rejected);
   }
-  return similar;
-}
+  std::optional<BoardView> operator()(const AprilGrid& board) const {
+    return FindAprilGrid(image, board, rejected);
+  }
+  std::optional<BoardView> operator()(const CircleGrid& board) const {
+    RefuseBelowThree(board.rows, board.columns, board);
+    return FindCircleGrid(image, board, rejected);
+  }
+  std::optional<BoardView> operator()(const Charuco& board) const {
+    return FindCharuco(image, board, rejected);
+  }
+
+  static void RefuseBelowThree(int rows, int columns, const Board& board) {
+    if (rows >= 3 && columns >= 3) return;
+    throw InputError({"board too small", "", Describe(board) + " can't be told from its background",
+                      "use one of at least 3 rows and 3 columns"});
+  }
+};
 
 // The similar board that is in most of a few images, spread over all of them.
-std::optional<Board> FindSimilarBoard(const ImageSource& images, const Board& board,
-                                      const DetectionOptions& options) {
+std::optional<Board> FindSimilarBoard(const ImageSource& images, const Board& board) {
   const std::vector<Board> similar = SimilarBoards(board);
   const size_t num_images = std::min(images.names.size(), kImagesSearchedAgain);
   using Found = std::vector<bool>;
   const std::vector<Found> found = ParallelMap<Found>(num_images, [&](size_t i) {
     const GreyImage image = images.load(i * images.names.size() / num_images);
     Found in_image;
-    for (const Board& other : similar) {
-      in_image.push_back(DetectBoard(image, other, options).has_value());
-    }
+    for (const Board& other : similar) in_image.push_back(DetectBoard(image, other).has_value());
     return in_image;
   });
   std::optional<Board> best;
@@ -61,23 +71,40 @@ std::optional<Board> FindSimilarBoard(const ImageSource& images, const Board& bo
   return best;
 }
 
+// What was seen instead of the board, and what to do about it.
+std::pair<std::string, std::string> Explain(const ImageSource& images, const Board& board,
+                                            const RejectionCounts& rejected) {
+  if (rejected.images_with_mirrored_board > 0) {
+    return {"a mirrored one was seen in " + std::to_string(rejected.images_with_mirrored_board),
+            "turn off mirroring in the camera's driver, or print the board the right way round"};
+  }
+  if (rejected.images_with_two_boards > 0) {
+    return {"two boards at a time were seen in " + std::to_string(rejected.images_with_two_boards),
+            "show one board at a time"};
+  }
+  if (const std::optional<Board> other = FindSimilarBoard(images, board)) {
+    return {"", AdviceFor(*other)};
+  }
+  if (rejected.tags_of_another_family > 0) {
+    return {"markers of another family or border were seen",
+            "check that --target names the family that was printed"};
+  }
+  if (rejected.tags_not_on_board > 0) {
+    return {"markers with numbers that this board has not were seen",
+            "check the rows and columns in --target"};
+  }
+  return {"", "check --target and that the whole board is sharp and in view"};
+}
+
 [[noreturn]] void FailWithoutBoard(const ImageSource& images, const Board& board,
-                                   const DetectionOptions& options) {
+                                   const RejectionCounts& rejected) {
   const size_t count = images.names.size();
   const std::string where =
       count == 1 ? images.names.front() : images.names.front() + " .. " + images.names.back();
-  std::string remedy = "check --target and that the whole board is sharp and in view";
-  if (const std::optional<Board> other = FindSimilarBoard(images, board, options)) {
-    const auto& found = std::get<Checkerboard>(*other);
-    remedy = "a board of " + std::to_string(found.rows) + " rows x " +
-             std::to_string(found.columns) +
-             " columns was found, so write targetRows: " + std::to_string(found.rows) +
-             " and targetCols: " + std::to_string(found.columns) +
-             " (inner corners are counted, not squares)";
-  }
+  const auto [seen, remedy] = Explain(images, board, rejected);
   throw InputError({"no board found", where,
                     "searched " + std::to_string(count) + (count == 1 ? " image" : " images") +
-                        " for a " + Describe(board),
+                        " for a " + Describe(board) + (seen.empty() ? "" : "; " + seen),
                     remedy});
 }
 
@@ -85,38 +112,48 @@ std::string Text(Resolution resolution) {
   return std::to_string(resolution.width) + " x " + std::to_string(resolution.height);
 }
 
-}  // namespace
-
-std::optional<BoardView> DetectBoard(const GreyImage& image, const Board& board,
-                                     const DetectionOptions& options) {
-  const auto& checkerboard = std::get<Checkerboard>(board);
-  if (checkerboard.rows < 3 || checkerboard.columns < 3) {
-    throw InputError({"board too small", "", Describe(board) + " can't be told from its background",
-                      "use one of at least 3 rows and 3 columns of inner corners"});
+// In the order of their stamps, each numbered as the one before.
+void NumberByContinuity(const Board& board, Detections* detections) {
+  const std::vector<std::vector<int>> numberings = OtherNumberings(board);
+  std::vector<BoardView>& views = detections->views;
+  std::vector<size_t> order(views.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return views[a].stamp < views[b].stamp; });
+  if (numberings.empty() || views.empty()) return;
+  if (views[order.front()].stamp == views[order.back()].stamp) return;
+  const Eigen::Matrix3Xd points_g = BoardPoints(board);
+  for (size_t k = 1; k < order.size(); ++k) {
+    views[order[k]] = NumberedAsBefore(views[order[k]], views[order[k - 1]], numberings, points_g);
   }
-  std::optional<Eigen::Matrix2Xd> pixels =
-      FindCheckerboard(image, checkerboard, options.refinement_half_window);
-  if (!pixels) return std::nullopt;
-  BoardView view;
-  view.corner_ids.resize(static_cast<size_t>(pixels->cols()));
-  std::iota(view.corner_ids.begin(), view.corner_ids.end(), 0);
-  view.pixels = *std::move(pixels);
-  view.points_g = BoardPoints(board);
-  return view;
+  detections->is_numbered_by_continuity = true;
 }
 
-Detections DetectBoards(const ImageSource& images, const Board& board,
-                        const DetectionOptions& options) {
+}  // namespace
+
+BoardSearch SearchForBoard(const GreyImage& image, const Board& board) {
+  assert(image.pixels.size() ==
+         static_cast<size_t>(image.resolution.width) * image.resolution.height);
+  BoardSearch search;
+  search.view = std::visit(Finder{image, &search.rejected}, board);
+  return search;
+}
+
+std::optional<BoardView> DetectBoard(const GreyImage& image, const Board& board) {
+  return SearchForBoard(image, board).view;
+}
+
+Detections DetectBoards(const ImageSource& images, const Board& board) {
   assert(images.stamps.empty() || images.stamps.size() == images.names.size());
   cv::setNumThreads(1);  // the loop over the images uses the cores better
   struct Search {
-    std::optional<BoardView> view;
+    BoardSearch found;
     Resolution resolution;
   };
   Progress progress("detecting", static_cast<int64_t>(images.names.size()));
   std::vector<Search> searches = ParallelMap<Search>(images.names.size(), [&](size_t k) -> Search {
     const GreyImage image = images.load(k);
-    Search search{DetectBoard(image, board, options), image.resolution};
+    Search search{SearchForBoard(image, board), image.resolution};
     progress.Advance();
     return search;
   });
@@ -124,7 +161,8 @@ Detections DetectBoards(const ImageSource& images, const Board& board,
   Detections detections;
   detections.num_images = static_cast<int>(images.names.size());
   for (size_t k = 0; k < searches.size(); ++k) {
-    std::optional<BoardView>& view = searches[k].view;
+    detections.rejected += searches[k].found.rejected;
+    std::optional<BoardView>& view = searches[k].found.view;
     if (!view) {
       detections.images_without_board.push_back(images.names[k]);
       continue;
@@ -140,11 +178,14 @@ Detections DetectBoards(const ImageSource& images, const Board& board,
     if (!images.stamps.empty()) view->stamp = images.stamps[k];
     detections.views.push_back(*std::move(view));
   }
-  if (!detections.views.empty()) return detections;
-  if (images.names.empty()) {
-    throw InputError({"no board found", "", "there are no images", "record some"});
+  if (detections.views.empty()) {
+    if (images.names.empty()) {
+      throw InputError({"no board found", "", "there are no images", "record some"});
+    }
+    FailWithoutBoard(images, board, detections.rejected);
   }
-  FailWithoutBoard(images, board, options);
+  NumberByContinuity(board, &detections);
+  return detections;
 }
 
 }  // namespace calibrato

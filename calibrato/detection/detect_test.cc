@@ -31,7 +31,7 @@ GreyImage Grey(Resolution resolution) {
 }
 
 double MeanError(const BoardView& view, const Eigen::Matrix2Xd& truth) {
-  return (view.pixels - truth).colwise().norm().mean();
+  return (view.pixels - truth(Eigen::all, view.corner_ids)).colwise().norm().mean();
 }
 
 ImageSource Source(const std::vector<GreyImage>& images) {
@@ -114,22 +114,34 @@ TEST(DetectBoard, TakesRowsAndColumnsSwappedForTheSameBoard) {
 }
 
 TEST(DetectBoard, FindsNothingWhereThereIsNoBoard) {
-  EXPECT_FALSE(DetectBoard(Grey(kResolution), kBoard));
-  EXPECT_FALSE(DetectBoard(Grey({4, 3}), kBoard));
-  EXPECT_FALSE(DetectBoard(Grey({1, 1}), kBoard));
+  for (const Board& board :
+       {Board(kBoard), Board(AprilGrid{6, 6, 0.088, 0.3}), Board(CircleGrid{6, 7, 0.06, false}),
+        Board(Charuco{6, 8, 0.06, 0.045, "DICT_5X5_100"})}) {
+    for (const Resolution size : {kResolution, Resolution{4, 3}, Resolution{1, 1},
+                                  Resolution{1, 500}, Resolution{20'000, 60}}) {
+      EXPECT_FALSE(DetectBoard(Grey(size), board)) << size.width;
+    }
+  }
 }
 
-TEST(DetectBoard, FindsNothingWhereACornerIsAtTheBorder) {
+TEST(DetectBoard, LeavesOutAndCountsCornersNearTheBorder) {
   const Eigen::Matrix3d H_c_g = View(0.0, 0.0);
   const double leftmost = DrawnCorners(kBoard, H_c_g).row(0).minCoeff();
-  const auto is_found_with_leftmost_at = [&](double u) {
+  const auto search_with_leftmost_at = [&](double u) {
     Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
     shift(0, 2) = u - leftmost;
-    return DetectBoard(DrawCheckerboard(kBoard, shift * H_c_g, kResolution), kBoard).has_value();
+    return SearchForBoard(DrawCheckerboard(kBoard, shift * H_c_g, kResolution), kBoard);
   };
-  EXPECT_TRUE(is_found_with_leftmost_at(12.0));
-  EXPECT_FALSE(is_found_with_leftmost_at(5.0));
-  EXPECT_FALSE(is_found_with_leftmost_at(0.5));
+  const BoardSearch inside = search_with_leftmost_at(12.0);
+  ASSERT_TRUE(inside.view);
+  EXPECT_EQ(inside.view->num_corners(), 42);
+  EXPECT_EQ(inside.rejected, RejectionCounts());
+  // The leftmost column of corners, one of each row.
+  const BoardSearch near = search_with_leftmost_at(5.0);
+  ASSERT_TRUE(near.view);
+  EXPECT_EQ(near.view->num_corners(), 36);
+  EXPECT_EQ(near.rejected.corners_near_border, 6);
+  EXPECT_FALSE(search_with_leftmost_at(0.5).view);
 }
 
 TEST(DetectBoard, RefusesABoardThatNoFinderCanTellFromItsBackground) {

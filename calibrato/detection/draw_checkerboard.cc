@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
+#include <numbers>
 
 namespace calibrato {
 namespace {
@@ -27,7 +28,8 @@ double Brightness(const Checkerboard& board, double x, double y) {
 
 GreyImage DrawCheckerboard(const Checkerboard& board, const Eigen::Matrix3d& H_c_g,
                            Resolution resolution) {
-  constexpr int kSamples = 8;
+  constexpr int kSamples = 89;  // a Fibonacci number, for which these samples are even
+  constexpr double kGoldenRatio = std::numbers::phi;
   constexpr double kWidth = 2.0;  // [px] of the square that a pixel sees through the lens
   // Plain numbers, since Eigen without optimisation would take seconds for an image.
   const Eigen::Matrix3d H_g_c = H_c_g.inverse();
@@ -40,15 +42,15 @@ GreyImage DrawCheckerboard(const Checkerboard& board, const Eigen::Matrix3d& H_c
     for (int pixel_u = 0; pixel_u < resolution.width; ++pixel_u) {
       double sum = 0.0;
       for (int i = 0; i < kSamples; ++i) {
-        for (int j = 0; j < kSamples; ++j) {
-          const double u = pixel_u + kWidth * ((i + 0.5) / kSamples - 0.5);
-          const double v = pixel_v + kWidth * ((j + 0.5) / kSamples - 0.5);
-          const double scale = h[2][0] * u + h[2][1] * v + h[2][2];
-          sum += Brightness(board, (h[0][0] * u + h[0][1] * v + h[0][2]) / scale,
-                            (h[1][0] * u + h[1][1] * v + h[1][2]) / scale);
-        }
+        // Each sample has a row and a column of its own, so that upright edges too are where they
+        // should be.
+        const double u = pixel_u + kWidth * ((i + 0.5) / kSamples - 0.5);
+        const double v = pixel_v + kWidth * (std::fmod(i * kGoldenRatio, 1.0) - 0.5);
+        const double scale = h[2][0] * u + h[2][1] * v + h[2][2];
+        sum += Brightness(board, (h[0][0] * u + h[0][1] * v + h[0][2]) / scale,
+                          (h[1][0] * u + h[1][1] * v + h[1][2]) / scale);
       }
-      image.pixels.push_back(static_cast<uint8_t>(std::lround(sum / (kSamples * kSamples))));
+      image.pixels.push_back(static_cast<uint8_t>(std::lround(sum / kSamples)));
     }
   }
   return image;

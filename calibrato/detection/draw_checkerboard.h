@@ -10,7 +10,7 @@ namespace calibrato {
 /// For tests: a picture of a checkerboard, drawn without OpenCV, whose corners are known exactly.
 /// @param H_c_g  Homography from (x, y, 1) on the board [m] to the pixel (u, v, 1), up to scale.
 /// The board has a white margin of one square; the square outside corner (0, 0), before it in row
-/// and column, is black. Behind the board all is grey. Each pixel is the mean of 8 x 8
+/// and column, is black. Behind the board all is grey. Each pixel is the mean of 89
 /// samples over a square of 2 px: its own area and the blur of a sharp lens.
 [[nodiscard]] GreyImage DrawCheckerboard(const Checkerboard& board, const Eigen::Matrix3d& H_c_g,
                                          Resolution resolution);

@@ -2,68 +2,23 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cmath>
-#include <limits>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "calibrato/detection/corner_order.h"
+#include "calibrato/detection/corner_refinement.h"
+#include "calibrato/detection/corner_view.h"
+#include "calibrato/detection/lattice.h"
+#include "calibrato/detection/saddle_field.h"
+#include "calibrato/detection/saddle_search.h"
 
 namespace calibrato {
 namespace {
 
-constexpr int kLargestHalfWindow = 5;
-constexpr int kMaxIterations = 40;
-constexpr double kConvergedStep = 0.001;  // [px]
+// Along the edges to the next corner, but for what the next corner's own edges need.
+constexpr double kFreeShare = 0.85;
 
-// The search takes time and, in very large images, misses boards that are plain to see: it is done
-// on an image of at most this side, the refinement on the image itself.
-constexpr int kLargestSearchedSide = 1600;
-
-std::vector<cv::Point2f> Search(const cv::Mat& image, cv::Size pattern) {
-  std::vector<cv::Point2f> corners;
-  // Without OpenCV's CALIB_CB_FAST_CHECK, which takes longer than to find a board that is plain to
-  // see and rejects some that are there. Images without a board take longer in return.
-  const bool found = cv::findChessboardCorners(
-      image, pattern, corners, cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE);
-  return found ? corners : std::vector<cv::Point2f>();
-}
-
-std::vector<cv::Point2f> SearchReduced(const cv::Mat& image, cv::Size pattern) {
-  const int side = std::max(image.cols, image.rows);
-  if (side <= kLargestSearchedSide) return Search(image, pattern);
-  const double factor = static_cast<double>(kLargestSearchedSide) / side;
-  cv::Mat reduced;
-  cv::resize(image, reduced, {}, factor, factor, cv::INTER_AREA);
-  std::vector<cv::Point2f> corners = Search(reduced, pattern);
-  const double u_scale = static_cast<double>(image.cols) / reduced.cols;
-  const double v_scale = static_cast<double>(image.rows) / reduced.rows;
-  for (cv::Point2f& corner : corners) {
-    // Pixel (0, 0) is the centre of the top-left pixel, in both images.
-    corner.x = static_cast<float>((corner.x + 0.5) * u_scale - 0.5);
-    corner.y = static_cast<float>((corner.y + 0.5) * v_scale - 0.5);
-  }
-  return corners;
-}
-
-double SmallestSpacing(const std::vector<cv::Point2f>& corners, const Checkerboard& board) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int row = 0; row < board.rows; ++row) {
-    for (int column = 0; column < board.columns; ++column) {
-      const size_t k = static_cast<size_t>(row) * board.columns + column;
-      if (column > 0) smallest = std::min(smallest, cv::norm(corners[k] - corners[k - 1]));
-      if (row > 0) {
-        smallest = std::min(smallest, cv::norm(corners[k] - corners[k - board.columns]));
-      }
-    }
-  }
-  return smallest;
-}
-
-// A finder asked for one row too many may take it from beside the board. Through a lens the spacing
-// changes little from one square to the next: by 0.15 in ordinary photos, 0.6 at the edge of a
-// fisheye's.
+// A part of the background may look like one more row. Through a lens the spacing changes little
+// from one square to the next: by 0.15 in ordinary photos, 0.6 at the edge of a fisheye's.
 bool IsEvenlySpaced(const Eigen::Matrix2Xd& pixels, const Checkerboard& board) {
   constexpr double kMaxChange = 0.9;
   const auto is_even = [&](Eigen::Index middle, Eigen::Index step) {
@@ -81,44 +36,69 @@ bool IsEvenlySpaced(const Eigen::Matrix2Xd& pixels, const Checkerboard& board) {
   return true;
 }
 
-// The largest half window that cv::cornerSubPix takes in an image of this size.
-int LargestHalfWindow(const cv::Mat& image) { return (std::min(image.cols, image.rows) - 5) / 2; }
+// The pixels of a block's points, with those of the missing ones estimated from their neighbours;
+// nothing where one has too few.
+std::optional<Eigen::Matrix2Xd> PixelsOf(const std::vector<int>& block, const SaddleField& field,
+                                         const Checkerboard& board) {
+  PixelGrid grid;
+  for (const int point : block) {
+    grid.push_back(point < 0 ? std::nullopt : std::optional(field.saddle(point).pixel));
+  }
+  grid = WithGapsFilled(grid, board.rows, board.columns);
+  Eigen::Matrix2Xd pixels(2, board.rows * board.columns);
+  for (Eigen::Index k = 0; k < pixels.cols(); ++k) {
+    if (!grid[static_cast<size_t>(k)]) return std::nullopt;
+    pixels.col(k) = *grid[static_cast<size_t>(k)];
+  }
+  return pixels;
+}
 
-bool IsInside(const Eigen::Matrix2Xd& pixels, Resolution resolution) {
-  constexpr double kMargin = 1.0;  // [px]
-  const Eigen::Array2d largest(resolution.width - 1 - kMargin, resolution.height - 1 - kMargin);
-  return (pixels.array() >= kMargin).all() &&
-         ((-pixels.array()).colwise() + largest >= 0.0).all();  // NaN fails both
+// Every such board among the saddles, in order.
+std::vector<Eigen::Matrix2Xd> BoardsAmong(const SaddleField& field, const GreyImage& image,
+                                          const Checkerboard& board) {
+  std::vector<Eigen::Matrix2Xd> boards;
+  for (const std::vector<LatticeNode>& nodes :
+       SaddleLattices(field, 9 * board.rows * board.columns / 10)) {
+    const std::vector<int> block = BlockOfLattice(nodes, board.rows, board.columns);
+    if (block.empty()) continue;
+    const std::optional<Eigen::Matrix2Xd> pixels = PixelsOf(block, field, board);
+    if (!pixels || !IsEvenlySpaced(*pixels, board)) continue;
+    if (std::optional<Eigen::Matrix2Xd> ordered = OrderCorners(image, board, *pixels)) {
+      boards.push_back(*std::move(ordered));
+    }
+  }
+  return boards;
 }
 
 }  // namespace
 
-std::optional<Eigen::Matrix2Xd> FindCheckerboard(const GreyImage& image, const Checkerboard& board,
-                                                 int half_window) {
+std::optional<BoardView> FindCheckerboard(const GreyImage& image, const Checkerboard& board,
+                                          RejectionCounts* rejected) {
   assert(board.rows >= 3 && board.columns >= 3);
   assert(image.pixels.size() ==
          static_cast<size_t>(image.resolution.width) * image.resolution.height);
-  const cv::Mat grey(image.resolution.height, image.resolution.width, CV_8UC1,
-                     const_cast<uint8_t*>(image.pixels.data()));  // cv::Mat knows no const data
-  if (LargestHalfWindow(grey) < 1) return std::nullopt;
-  std::vector<cv::Point2f> corners = SearchReduced(grey, {board.columns, board.rows});
-  if (corners.empty()) return std::nullopt;
-
-  if (half_window == 0) {
-    const double third = SmallestSpacing(corners, board) / 3.0;
-    half_window = std::clamp(static_cast<int>(third), 1, kLargestHalfWindow);
+  std::vector<Eigen::Matrix2Xd> boards;
+  for (const int reduction : ReductionsToSearch(image.resolution)) {
+    boards = BoardsAmong(SaddleField(FindSaddles(image, reduction)), image, board);
+    if (!boards.empty()) break;
   }
-  half_window = std::min(half_window, LargestHalfWindow(grey));
-  cv::cornerSubPix(
-      grey, corners, {half_window, half_window}, {-1, -1},
-      {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, kMaxIterations, kConvergedStep});
+  if (boards.size() > 1) ++rejected->images_with_two_boards;
+  if (boards.size() != 1) return std::nullopt;
 
-  Eigen::Matrix2Xd pixels(2, static_cast<Eigen::Index>(corners.size()));
-  for (size_t k = 0; k < corners.size(); ++k) {
-    pixels.col(static_cast<Eigen::Index>(k)) << corners[k].x, corners[k].y;
+  const Eigen::Matrix3Xd points_g = BoardPoints(board);
+  const CornerSurroundings surroundings{
+      {kFreeShare * board.row_spacing_m, kFreeShare * board.column_spacing_m},
+      kFreeShare * std::min(board.row_spacing_m, board.column_spacing_m)};
+  std::vector<bool> is_dark_ahead;
+  for (int k = 0; k < board.rows * board.columns; ++k) {
+    is_dark_ahead.push_back((k / board.columns + k % board.columns) % 2 == 0);
   }
-  if (!IsInside(pixels, image.resolution) || !IsEvenlySpaced(pixels, board)) return std::nullopt;
-  return OrderCorners(image, board, pixels);
+  const std::vector<std::optional<Eigen::Vector2d>> corners = RefineCorners(
+      image, points_g.topRows<2>(), boards.front(), is_dark_ahead, surroundings, rejected);
+  std::optional<BoardView> view = ViewOf(corners, points_g);
+  // Where a third is out of place, it was not the board.
+  if (view && 3 * view->num_corners() < 2 * points_g.cols()) return std::nullopt;
+  return view;
 }
 
 }  // namespace calibrato

@@ -1,9 +1,14 @@
 #include "calibrato/diagnosis/camera_document.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
+#include "calibrato/calibration/projection_uncertainty.h"
+#include "calibrato/diagnosis/camera_drawings.h"
+#include "calibrato/diagnosis/checks_document.h"
+#include "calibrato/geometry/so3.h"
 #include "calibrato/sensors/camera_chain.h"
 
 namespace calibrato {
@@ -53,76 +58,120 @@ Value InformationValue(const CameraCalibration& calibration) {
   return value;
 }
 
-Value CameraValue(const CameraReportCard& card) {
-  const CameraCalibration& calibration = card.calibration;
+Value DetectionRejectedValue(const RejectionCounts& counts) {
   Value value = Value::Object();
-  value.Set("model", card.problem.model).Set("resolution", SizeValue(card.problem.resolution));
-  if (calibration.model) {
-    const Eigen::VectorXd parameters = calibration.model->parameters();
-    const Eigen::Index num_distortion = parameters.size() - 4;
-    value.Set("intrinsics", Value::Numbers(Eigen::VectorXd(parameters.head<4>())))
-        .Set("distortion", Value::Numbers(Eigen::VectorXd(parameters.tail(num_distortion))));
-    if (calibration.covariance.size() != 0) {
-      const Eigen::VectorXd sigma = calibration.covariance.diagonal().cwiseSqrt();
-      value.Set("intrinsics_sigma", Value::Numbers(Eigen::VectorXd(sigma.head<4>())))
-          .Set("distortion_sigma", Value::Numbers(Eigen::VectorXd(sigma.tail(num_distortion))));
-    }
-    // No corner is left out as an outlier so far: both are over the same corners.
-    value.Set("reprojection_rms_px", calibration.reprojection_rms_px)
-        .Set("reprojection_rms_all_px", calibration.reprojection_rms_px)
-        .Set("noise_stddev_px", calibration.noise_stddev_px);
-  }
-  value.Set("num_views", calibration.used_views.size())
-      .Set("num_corners", calibration.num_corners)
-      .Set("T_cn_cnm1", Value())
-      .Set("termination", TerminationName(calibration.termination))
-      .Set("coverage", CoverageValue(calibration.coverage))
-      .Set("information", InformationValue(calibration));
+  value.Set("corners_near_border", counts.corners_near_border)
+      .Set("corners_of_bad_fit", counts.corners_of_bad_fit)
+      .Set("tags_not_on_board", counts.tags_not_on_board)
+      .Set("tags_of_another_family", counts.tags_of_another_family)
+      .Set("tags_seen_twice", counts.tags_seen_twice)
+      .Set("images_with_two_boards", counts.images_with_two_boards)
+      .Set("images_with_mirrored_board", counts.images_with_mirrored_board);
   return value;
 }
 
-Value CovarianceValue(const std::vector<CameraReportCard>& cameras) {
-  Value names = Value::Array();
-  Eigen::Index size = 0;
-  for (const CameraReportCard& card : cameras) {
-    if (card.calibration.covariance.size() == 0) continue;
-    for (const std::string& name : CameraModel::ParameterNames(card.problem.model)) {
-      names.Append(card.name + "." + name);
+// What was left out of one camera's data, and why.
+Value RejectedValue(const CameraReportCard& card, const CameraCalibration& calibration) {
+  Value corners = Value::Array();
+  for (const RejectedCorner& corner : calibration.rejected_corners) {
+    Value entry = Value::Object();
+    entry.Set("view", corner.view)
+        .Set("corner_id", corner.corner_id)
+        .Set("residual_px", Value::Numbers(Eigen::VectorXd(corner.residual)));
+    corners.Append(std::move(entry));
+  }
+  Value views = Value::Array();
+  for (const RejectedView& view : calibration.rejected_views) {
+    Value entry = Value::Object();
+    entry.Set("name", view.name)
+        .Set("reason", ViewRejectionName(view.reason))
+        .Set("num_corners", view.num_corners);
+    if (std::isfinite(view.rms_px)) entry.Set("rms_px", view.rms_px);
+    views.Append(std::move(entry));
+  }
+  Value value = Value::Object();
+  value.Set("num_corners", calibration.rejected_corners.size())
+      .Set("corners", std::move(corners))
+      .Set("views", std::move(views))
+      .Set("images_without_board", card.images_without_board.size())
+      .Set("detection", DetectionRejectedValue(card.detection_rejected));
+  return value;
+}
+
+Value CameraValue(const CameraRigReport& report, size_t c,
+                  const std::optional<HousedCamera>& housed) {
+  const CameraCalibration& calibration = report.calibration.cameras[c];
+  const CameraProblem& problem = report.problem.cameras[c];
+  Value value = Value::Object();
+  value.Set("model", problem.model).Set("resolution", SizeValue(problem.resolution));
+  if (calibration.model) {
+    const Eigen::VectorXd intrinsics = calibration.model->intrinsics();
+    const Eigen::VectorXd distortion = calibration.model->distortion();
+    value.Set("intrinsics", Value::Numbers(intrinsics))
+        .Set("distortion", Value::Numbers(distortion));
+    if (calibration.covariance.size() != 0) {
+      const Eigen::VectorXd sigma = calibration.covariance.diagonal().cwiseSqrt();
+      value.Set("intrinsics_sigma", Value::Numbers(Eigen::VectorXd(sigma.head(intrinsics.size()))))
+          .Set("distortion_sigma", Value::Numbers(Eigen::VectorXd(sigma.tail(distortion.size()))));
     }
-    size += card.calibration.covariance.rows();
+    value.Set("reprojection_rms_px", calibration.reprojection_rms_px)
+        .Set("reprojection_rms_all_px", calibration.reprojection_rms_all_px)
+        .Set("noise_stddev_px", calibration.noise_stddev_px);
   }
-  Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(size, size);
-  Eigen::Index start = 0;
-  for (const CameraReportCard& card : cameras) {
-    const Eigen::MatrixXd& block = card.calibration.covariance;
-    whole.block(start, start, block.rows(), block.cols()) = block;
-    start += block.rows();
-  }
+  value.Set("num_views", calibration.used_views.size()).Set("num_corners", calibration.num_corners);
+  value.Set("rejected", RejectedValue(report.cameras[c], calibration));
+  const bool related = c > 0 && report.calibration.T_cn_cnm1[c - 1].has_value();
+  value.Set("T_cn_cnm1", related ? ToValue(*report.calibration.T_cn_cnm1[c - 1]) : Value());
+  if (c > 0) value.Set("num_shared_frames", report.calibration.num_shared_frames[c - 1]);
+  value.Set("termination", TerminationName(calibration.termination))
+      .Set("coverage", CoverageValue(calibration.coverage))
+      .Set("information", InformationValue(calibration))
+      .Set("projection_uncertainty",
+           ProjectionUncertaintyValue(housed, calibration, problem.resolution))
+      .Set("checks", ChecksValue(report.cameras[c].diagnosis));
+  return value;
+}
+
+Value CovarianceValue(const CameraRigCalibration& calibration) {
+  Value names = Value::Array();
+  for (const std::string& name : calibration.covariance_names) names.Append(name);
   Value matrix = Value::Array();
-  for (Eigen::Index row = 0; row < size; ++row) {
-    matrix.Append(Value::Numbers(Eigen::VectorXd(whole.row(row))));
+  for (Eigen::Index row = 0; row < calibration.covariance.rows(); ++row) {
+    matrix.Append(Value::Numbers(Eigen::VectorXd(calibration.covariance.row(row))));
   }
   Value value = Value::Object();
   value.Set("names", std::move(names)).Set("matrix", std::move(matrix));
   return value;
 }
 
-// Findings of several cameras say whose they are.
-std::vector<Finding> AllFindings(const std::vector<CameraReportCard>& cameras) {
-  std::vector<Finding> all;
-  for (const CameraReportCard& card : cameras) {
-    for (Finding finding : card.findings) {
-      if (cameras.size() > 1) finding.what = card.name + ": " + finding.what;
+Value BendingValue(const EstimatedBending& bending) {
+  Value value = Value::Object();
+  value.Set("coefficients_per_m", Value::Numbers(Eigen::VectorXd(bending.bending.coefficients)))
+      .Set("sigma_per_m",
+           Value::Numbers(Eigen::VectorXd(bending.covariance.diagonal().cwiseSqrt())))
+      .Set("depth_m", bending.depth_m);
+  return value;
+}
+
+// Findings of several cameras say whose they are; the worst come first.
+std::vector<Finding> AllFindings(const CameraRigReport& report) {
+  std::vector<Finding> all = report.findings;
+  for (const CameraReportCard& card : report.cameras) {
+    for (Finding finding : card.diagnosis.findings) {
+      if (report.cameras.size() > 1) finding.what = card.name + ": " + finding.what;
       all.push_back(std::move(finding));
     }
   }
+  std::stable_sort(all.begin(), all.end(), [](const Finding& a, const Finding& b) {
+    return static_cast<int>(a.severity) > static_cast<int>(b.severity);
+  });
   return all;
 }
 
 // How far the lens moves a point, from the image's middle to its corner.
 Value DistortionCurve(const CameraModel& model, Resolution resolution) {
   constexpr int kNumPoints = 60;
-  const Eigen::Vector4d k = model.intrinsics();
+  const Eigen::Vector4d k = model.focal_and_centre();
   const Eigen::Vector2d corner(resolution.width - 1 - k(2), resolution.height - 1 - k(3));
   Value radius = Value::Array();
   Value shift = Value::Array();
@@ -138,45 +187,101 @@ Value DistortionCurve(const CameraModel& model, Resolution resolution) {
   return curve;
 }
 
-}  // namespace
-
-Verdict VerdictOf(const std::vector<CameraReportCard>& cameras) {
-  return VerdictOf(AllFindings(cameras));
+// "  left out: 3 corners; 1 view: left07.jpg (does not fit)"
+std::string RejectedText(const CameraCalibration& calibration) {
+  std::vector<std::string> parts;
+  if (!calibration.rejected_corners.empty()) {
+    parts.push_back(std::to_string(calibration.rejected_corners.size()) + " corners");
+  }
+  for (const RejectedView& view : calibration.rejected_views) {
+    parts.push_back("view " + view.name + " (" + ViewRejectionName(view.reason) + ")");
+  }
+  if (parts.empty()) return "";
+  std::string text = "  left out:";
+  constexpr size_t kMaxNamed = 8;
+  for (size_t i = 0; i < std::min(parts.size(), kMaxNamed); ++i) {
+    text += (i == 0 ? " " : ", ") + parts[i];
+  }
+  if (parts.size() > kMaxNamed) {
+    text += " and " + std::to_string(parts.size() - kMaxNamed) + " more views";
+  }
+  return text + "\n";
 }
 
-Value CameraResult(const std::vector<CameraReportCard>& cameras) {
+}  // namespace
+
+std::vector<Finding> RigFindings(const CameraRigCalibration& calibration) {
+  std::vector<Finding> findings;
+  for (size_t n = 1; n < calibration.cameras.size(); ++n) {
+    if (calibration.T_cn_cnm1[n - 1]) continue;
+    const std::string pair = "cam" + std::to_string(n - 1) + " and cam" + std::to_string(n);
+    findings.push_back(
+        {Severity::kWarn,
+         pair + " share no frame in which both saw the board: where one is from the other is not "
+                "known, and each was calibrated on its own",
+         "show the board where their images overlap; are their clocks the same?"});
+  }
+  if (calibration.num_separated_views > 0) {
+    findings.push_back(
+        {Severity::kInfo,
+         std::to_string(calibration.num_separated_views) +
+             " views do not fit the other cameras' of their frame and count for their camera alone",
+         "are the cameras triggered together, and rigidly mounted?"});
+  }
+  if (calibration.bending) {
+    const EstimatedBending& bending = *calibration.bending;
+    const Eigen::Vector3d& a = bending.bending.coefficients;
+    // The 99.9 % point of chi-square with 3 degrees of freedom.
+    if (a.dot(bending.covariance.inverse() * a) > 16.27) {
+      char what[96];
+      std::snprintf(what, sizeof(what),
+                    "the board is not flat: %.2f mm from its lowest to its "
+                    "highest point",
+                    1e3 * bending.depth_m);
+      findings.push_back({Severity::kWarn, what,
+                          "the result allows for it; glue the board to "
+                          "something flat all the same"});
+    }
+  }
+  return findings;
+}
+
+Verdict VerdictOf(const CameraRigReport& report) { return VerdictOf(AllFindings(report)); }
+
+Value CameraResult(const CameraRigReport& report) {
+  const auto housed = HouseCameras(report.problem, report.calibration);
   Value list = Value::Array();
   Coverage least{1.0, 1.0, 1.0, 1.0};
-  const CameraReportCard* weakest = &cameras.front();
-  const CameraReportCard* unfinished = nullptr;
-  for (const CameraReportCard& card : cameras) {
-    const CameraCalibration& calibration = card.calibration;
-    list.Append(CameraValue(card));
+  const CameraCalibration* weakest = &report.calibration.cameras.front();
+  for (size_t c = 0; c < report.cameras.size(); ++c) {
+    const CameraCalibration& calibration = report.calibration.cameras[c];
+    list.Append(CameraValue(report, c, housed[c]));
     least.x = std::min(least.x, calibration.coverage.x);
     least.y = std::min(least.y, calibration.coverage.y);
     least.size = std::min(least.size, calibration.coverage.size);
     least.skew = std::min(least.skew, calibration.coverage.skew);
-    if (calibration.information.a_optimality > weakest->calibration.information.a_optimality) {
-      weakest = &card;
+    if (calibration.information.a_optimality > weakest->information.a_optimality) {
+      weakest = &calibration;
     }
-    if (calibration.termination != Termination::kConverged) unfinished = &card;
   }
-  const Termination termination =
-      unfinished != nullptr ? unfinished->calibration.termination : Termination::kConverged;
   Value result = Value::Object();
   result.Set("kind", "camera")
-      .Set("termination", TerminationName(termination))
-      .Set("verdict", VerdictName(VerdictOf(cameras)))
-      .Set("findings", ToValue(AllFindings(cameras)))
+      .Set("termination", TerminationName(report.calibration.termination))
+      .Set("verdict", VerdictName(VerdictOf(report)))
+      .Set("findings", ToValue(AllFindings(report)))
       .Set("cameras", std::move(list))
-      .Set("covariance", CovarianceValue(cameras))
+      .Set("covariance", CovarianceValue(report.calibration))
       .Set("coverage", CoverageValue(least))
-      .Set("information", InformationValue(weakest->calibration));
+      .Set("information", InformationValue(*weakest));
+  if (report.calibration.bending) {
+    result.Set("board_bending", BendingValue(*report.calibration.bending));
+  }
   return result;
 }
 
-Value CameraPlots(const CameraReportCard& camera) {
-  const CameraCalibration& calibration = camera.calibration;
+Value CameraPlots(const CameraRigReport& report, size_t camera) {
+  const CameraCalibration& calibration = report.calibration.cameras[camera];
+  const Resolution resolution = report.problem.cameras[camera].resolution;
   Value views = Value::Array();
   const size_t num_views = calibration.used_views.size();
   const size_t stride = (num_views + kMaxPlottedViews - 1) / kMaxPlottedViews;
@@ -192,7 +297,7 @@ Value CameraPlots(const CameraReportCard& camera) {
     views.Append(std::move(entry));
   }
   Value plots = Value::Object();
-  plots.Set("resolution", SizeValue(camera.problem.resolution))
+  plots.Set("resolution", SizeValue(resolution))
       .Set("noise_stddev_px", calibration.noise_stddev_px)
       .Set("views", std::move(views));
   Value points = Value::Array();
@@ -203,42 +308,57 @@ Value CameraPlots(const CameraReportCard& camera) {
     }
   }
   Value without = Value::Array();
-  for (const std::string& name : camera.images_without_board) without.Append(name);
-  plots.Set("board_points_g", std::move(points)).Set("images_without_board", std::move(without));
+  for (const std::string& name : report.cameras[camera].images_without_board) without.Append(name);
+  plots.Set("board_points_g", std::move(points))
+      .Set("images_without_board", std::move(without))
+      .Set("rejected_corners", RejectedCornerMarks(calibration.rejected_corners));
   if (calibration.model) {
-    plots.Set("distortion_curve", DistortionCurve(*calibration.model, camera.problem.resolution));
+    plots.Set("distortion_curve", DistortionCurve(*calibration.model, resolution))
+        .Set("lens_curve", LensCurve(*calibration.model, resolution))
+        .Set("straightened_view", StraightenedView(*calibration.model, calibration.used_views));
   }
   return plots;
 }
 
-std::string CameraText(const std::vector<CameraReportCard>& cameras) {
+std::string CameraText(const CameraRigReport& report) {
   std::string text;
   char line[256];
-  for (const CameraReportCard& card : cameras) {
-    const CameraCalibration& calibration = card.calibration;
+  for (size_t c = 0; c < report.cameras.size(); ++c) {
+    const CameraCalibration& calibration = report.calibration.cameras[c];
+    const std::string& model = report.problem.cameras[c].model;
     std::snprintf(line, sizeof(line), "%s  %s  %zu views, %d corners, rms %.3f px, %s\n",
-                  card.name.c_str(), card.problem.model.c_str(), calibration.used_views.size(),
+                  report.cameras[c].name.c_str(), model.c_str(), calibration.used_views.size(),
                   calibration.num_corners, calibration.reprojection_rms_px,
                   std::string(TerminationName(calibration.termination)).c_str());
     text += line;
+    text += RejectedText(calibration);
     if (!calibration.model) continue;
-    const std::vector<std::string> names = CameraModel::ParameterNames(card.problem.model);
+    const std::vector<std::string> names = CameraModel::ParameterNames(model);
     const Eigen::VectorXd parameters = calibration.model->parameters();
+    const int focal_index = CameraModel::FocalIndex(model);
     for (Eigen::Index i = 0; i < parameters.size(); ++i) {
       const char* name = names[static_cast<size_t>(i)].c_str();
-      const char* unit = i < 4 ? "px" : "";
+      const char* unit = i >= focal_index && i < focal_index + 4 ? "px" : "";
       if (calibration.covariance.size() == 0) {
-        std::snprintf(line, sizeof(line), "  %-3s %12.5f %s\n", name, parameters(i), unit);
+        std::snprintf(line, sizeof(line), "  %-5s %12.5f %s\n", name, parameters(i), unit);
       } else if (calibration.covariance(i, i) == 0.0) {
-        std::snprintf(line, sizeof(line), "  %-3s %12.5f %s  held\n", name, parameters(i), unit);
+        std::snprintf(line, sizeof(line), "  %-5s %12.5f %s  held\n", name, parameters(i), unit);
       } else {
-        std::snprintf(line, sizeof(line), "  %-3s %12.5f +- %.5f %s\n", name, parameters(i),
+        std::snprintf(line, sizeof(line), "  %-5s %12.5f +- %.5f %s\n", name, parameters(i),
                       std::sqrt(calibration.covariance(i, i)), unit);
       }
       text += line;
     }
+    if (c > 0 && report.calibration.T_cn_cnm1[c - 1]) {
+      const Rigid3& T = *report.calibration.T_cn_cnm1[c - 1];
+      std::snprintf(line, sizeof(line),
+                    "  from cam%zu: %.5f %.5f %.5f m, turned by %.5f rad (%d shared frames)\n",
+                    c - 1, T.t.x(), T.t.y(), T.t.z(), LogSo3(T.R).norm(),
+                    report.calibration.num_shared_frames[c - 1]);
+      text += line;
+    }
   }
-  const std::vector<Finding> findings = AllFindings(cameras);
+  const std::vector<Finding> findings = AllFindings(report);
   text += "verdict: " + std::string(VerdictName(VerdictOf(findings))) + "\n";
   for (const Finding& finding : findings) {
     text += "  - " + finding.what;

@@ -8,7 +8,8 @@
 
 namespace calibrato {
 
-enum class Severity { kInfo, kWarn, kFail };
+/// Inconclusive: not wrong, but not determined by the data.
+enum class Severity { kInfo, kWarn, kInconclusive, kFail };
 
 /// One thing worth saying about a result, in the words of the person who holds the camera.
 struct Finding {
@@ -19,11 +20,15 @@ struct Finding {
 };
 
 /// To be believed or not (docs/formats.md section 1).
-enum class Verdict { kPass, kWarn, kFail };
-[[nodiscard]] std::string_view VerdictName(Verdict verdict);  ///< "pass", "warn", "fail"
+enum class Verdict { kPass, kWarn, kInconclusive, kFail };
+/// "pass", "warn", "inconclusive", "fail"
+[[nodiscard]] std::string_view VerdictName(Verdict verdict);
 
 /// The worst of the findings.
 [[nodiscard]] Verdict VerdictOf(const std::vector<Finding>& findings);
+
+/// std::printf into a string: numbers in findings.
+[[nodiscard]] [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
 
 /// [{"severity", "what", "remedy"}, ..]
 [[nodiscard]] Value ToValue(const std::vector<Finding>& findings);

@@ -52,10 +52,10 @@ Trial RunTrial(const Rig& rig, const TimedMotion& motion, const Rng& noise) {
   const CameraCalibration calibration = CalibrateCamera(problem);
   trial.converged = calibration.termination == Termination::kConverged;
   if (!trial.converged) return trial;
-  const Eigen::Vector4d truth = camera.model.intrinsics();
-  const Eigen::Vector4d error = calibration.model->intrinsics() - truth;
+  const Eigen::Vector4d truth = camera.model.focal_and_centre();
+  const Eigen::Vector4d error = calibration.model->focal_and_centre() - truth;
   const Eigen::Matrix4d covariance = calibration.covariance.topLeftCorner<4, 4>();
-  trial.relative_error = RelativeIntrinsicError(calibration.model->intrinsics(), truth);
+  trial.relative_error = RelativeIntrinsicError(calibration.model->focal_and_centre(), truth);
   trial.focal_error_px = error.head<2>().norm() / std::sqrt(2.0);
   trial.prediction_error_px =
       PredictionErrorPx(*calibration.model, camera.model, camera.resolution);

@@ -62,10 +62,10 @@ double QuinticPhase(double s) { return QuinticPhaseAt(5.0 * s, 5.0).theta; }
 // sqrt(trace of the bound of fu fv pu pv) / ||fu fv pu pv||.
 double RelativeBound(const Frames& frames, int num_distortion) {
   Eigen::VectorXd parameters = Eigen::VectorXd::Zero(4 + num_distortion);
-  parameters.head<4>() = PaperRig().cameras[0].model.intrinsics();
+  parameters.head<4>() = PaperRig().cameras[0].model.focal_and_centre();
   const CameraModel model(num_distortion == 0 ? "pinhole-none" : "pinhole-radtan5", parameters);
   const auto covariance =
-      CovarianceFromInformation(CameraInformation({model, frames.T_c_g}, frames.views, {}), {});
+      CovarianceFromInformation(CameraInformation(model, frames.T_c_g, frames.views, {}), {});
   if (!covariance) return std::numeric_limits<double>::infinity();
   return kNoisePx * std::sqrt(covariance->topLeftCorner<4, 4>().trace()) /
          parameters.head<4>().norm();

@@ -41,7 +41,8 @@ TEST(IntrinsicCovariance, CoversTheTruth) {
         FramesThatCount(SimulateFrames(rig, *motion, Time(), noise).views, camera.resolution);
     const CameraCalibration calibration = CalibrateCamera(problem);
     if (calibration.termination != Termination::kConverged) return Outcome{};
-    const Eigen::Vector4d error = calibration.model->intrinsics() - camera.model.intrinsics();
+    const Eigen::Vector4d error =
+        calibration.model->focal_and_centre() - camera.model.focal_and_centre();
     const Eigen::Matrix4d covariance = calibration.covariance.topLeftCorner<4, 4>();
     return Outcome{true, error.dot(covariance.ldlt().solve(error))};
   });

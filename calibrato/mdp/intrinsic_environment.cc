@@ -14,7 +14,7 @@ constexpr int kMaxIterations = 50;
 
 bool IsDetermined(const CameraCalibration& calibration) {
   if (calibration.termination != Termination::kConverged) return false;
-  const Eigen::Vector2d f = calibration.model->intrinsics().head<2>();
+  const Eigen::Vector2d f = calibration.model->focal_and_centre().head<2>();
   const Eigen::Vector2d sigma = calibration.covariance.diagonal().head<2>().cwiseSqrt();
   return (sigma.array() <= kMaxFocalSigma * f.array()).all();
 }
@@ -47,7 +47,8 @@ Eigen::VectorXd IntrinsicEnvironment::Reset(const Rng& rng) {
   views_.clear();
   coverage_ = {};
   estimate_ = PriorMeanIntrinsics();
-  relative_error_ = RelativeIntrinsicError(estimate_, rig_.cameras.front().model.intrinsics());
+  relative_error_ =
+      RelativeIntrinsicError(estimate_, rig_.cameras.front().model.focal_and_centre());
   bonus_paid_ = false;
   return Observation();
 }
@@ -83,8 +84,9 @@ StepResult IntrinsicEnvironment::Step(const LoopCoefficients& action) {
     problem.views = views_;
     const CameraCalibration calibration = CalibrateCamera(problem, kMaxIterations);
     coverage_ = calibration.coverage;
-    estimate_ = IsDetermined(calibration) ? calibration.model->intrinsics() : PriorMeanIntrinsics();
-    relative_error_ = RelativeIntrinsicError(estimate_, camera.model.intrinsics());
+    estimate_ =
+        IsDetermined(calibration) ? calibration.model->focal_and_centre() : PriorMeanIntrinsics();
+    relative_error_ = RelativeIntrinsicError(estimate_, camera.model.focal_and_centre());
     coverage_gain = coverage_.sum() - coverage_before;
     error_fall = error_before - relative_error_;
     path_length = PathLength(motion);

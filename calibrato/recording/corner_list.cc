@@ -12,6 +12,7 @@
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/nearest_name.h"
 #include "calibrato/base/value.h"
+#include "calibrato/recording/comma_separated.h"
 #include "calibrato/recording/text_lines.h"
 
 namespace calibrato {
@@ -26,24 +27,6 @@ constexpr std::array<std::string_view, kNumColumns> kColumnNames = {
     "timestamp", "tag_id", "tag_corner", "u", "v", "x", "y", "z"};
 constexpr std::array<std::string_view, kNumColumns> kColumnUnits = {"ns", "",  "",  "px",
                                                                     "px", "m", "m", "m"};
-
-bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
-
-std::string_view Trimmed(std::string_view text) {
-  while (!text.empty() && IsBlank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && IsBlank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-void SplitAtCommas(std::string_view line, std::vector<std::string_view>* fields) {
-  fields->clear();
-  while (true) {
-    const size_t comma = line.find(',');
-    fields->push_back(Trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return;
-    line.remove_prefix(comma + 1);
-  }
-}
 
 struct Row {
   int64_t stamp = 0;
@@ -143,8 +126,7 @@ class Header {
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (error != std::errc() || end != field.data() + field.size() || value < 0 || value > high) {
       Fail(line, kColumnNames[column],
-           "expected a whole number from 0 to " + std::to_string(high) + ", found '" +
-               Quoted(field) + "'",
+           "expected a whole number from 0 to " + std::to_string(high) + ", found " + Quoted(field),
            "correct the line");
     }
     return value;
@@ -155,15 +137,10 @@ class Header {
     double value = 0.0;
     const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
     if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value)) {
-      Fail(line, kColumnNames[column], "expected a finite number, found '" + Quoted(field) + "'",
+      Fail(line, kColumnNames[column], "expected a finite number, found " + Quoted(field),
            "correct the line");
     }
     return value;
-  }
-
-  static std::string Quoted(std::string_view field) {
-    constexpr size_t kMaxQuoted = 40;
-    return std::string(field.substr(0, kMaxQuoted)) + (field.size() > kMaxQuoted ? ".." : "");
   }
 
   std::string path_;
@@ -192,15 +169,12 @@ struct Table {
 };
 
 Table ReadTable(const std::string& path) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   TextLines lines(path);
   std::optional<Table> table;
   std::vector<std::string_view> fields;
-  while (std::optional<std::string_view> next = lines.Next()) {
-    if (lines.line_number() == 1 && next->starts_with(kByteOrderMark)) {
-      next->remove_prefix(kByteOrderMark.size());
-    }
-    const std::string_view line = Trimmed(*next);
+  while (const std::optional<std::string_view> next = lines.Next()) {
+    const std::string_view line =
+        Trimmed(lines.line_number() == 1 ? WithoutByteOrderMark(*next) : *next);
     if (line.empty()) continue;
     if (!table) {
       if (const std::optional<std::string_view> names = ColumnNames(line)) {

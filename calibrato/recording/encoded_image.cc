@@ -160,6 +160,12 @@ EncodedImage WalkJpeg(const std::string& bytes) {
     if (is_frame_header) {
       resolution =
           CheckedResolution(reader.BigEndian(position + 5, 2), reader.BigEndian(position + 3, 2));
+      // Four are inks (CMYK), of which decoders disagree whether 0 or 255 is white.
+      const uint8_t num_components = reader.Byte(position + 7);
+      if (num_components > 3) {
+        throw Flaw{"it has " + std::to_string(num_components) + " colour components, as for print",
+                   "convert it to grey or RGB"};
+      }
     }
     static_cast<void>(reader.Part(position, length));
     position += length;

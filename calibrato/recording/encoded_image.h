@@ -25,9 +25,10 @@ inline constexpr int64_t kMaxImagePixels = 100'000'000;
 /// - PNG: every chunk up to IEND, the checksum of those that carry the image; the others are left
 ///   out;
 /// - BMP, TIFF, PGM: the pixels that the header announces.
-/// Bytes behind the end are ignored.
+/// Bytes behind the end are ignored. Of an animated PNG that is the first picture, of a TIFF of
+/// several pages the first page; a GIF is not read.
 /// @throws InputError that names the file: missing, a folder, empty, not an image of these formats,
-/// truncated, damaged, more than kMaxImagePixels.
+/// truncated, damaged, more than kMaxImagePixels, a JPEG of inks (CMYK).
 [[nodiscard]] EncodedImage ReadEncodedImage(const std::string& path);
 
 }  // namespace calibrato

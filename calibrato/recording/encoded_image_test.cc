@@ -81,6 +81,25 @@ TEST_F(EncodedImageTest, RefusesAPngWhoseChecksumsOrPartsAreWrong) {
   EXPECT_THAT(ErrorOf(kPngSignature + end), HasSubstr("does not begin with a header"));
 }
 
+TEST_F(EncodedImageTest, TakesTheFirstPictureOfAnAnimatedPng) {
+  // Animation lies in ancillary parts (acTL, fcTL, fdAT) around the picture that all programs show.
+  const std::string plain =
+      kPngSignature + PngHeader(640, 480) + PngChunk("IDAT", "pixels") + PngChunk("IEND", "");
+  const std::string animated =
+      kPngSignature + PngHeader(640, 480) + PngChunk("acTL", std::string(8, '\1')) +
+      PngChunk("fcTL", std::string(26, '\0')) + PngChunk("IDAT", "pixels") +
+      PngChunk("fcTL", std::string(26, '\0')) + PngChunk("fdAT", "0000other pixels") +
+      PngChunk("IEND", "");
+  EXPECT_EQ(Read(animated).bytes, plain);
+}
+
+TEST_F(EncodedImageTest, RefusesAJpegOfInks) {
+  const std::string four_components =
+      JpegSegment("\xc0", "\x8" + BigEndian(480, 2) + BigEndian(640, 2) + "\x4");
+  EXPECT_THAT(ErrorOf("\xff\xd8" + four_components),
+              AllOf(HasSubstr("4 colour components"), HasSubstr("convert it to grey")));
+}
+
 TEST_F(EncodedImageTest, LooksForTheEndOfAJpegBehindItsScanNotInItsThumbnail) {
   const std::string start = "\xff\xd8";
   const std::string end = "\xff\xd9";

@@ -7,7 +7,9 @@
 namespace calibrato {
 
 /// Reads a PNG, JPEG, BMP, TIFF or PGM as grey. Colour becomes luminance; the EXIF orientation is
-/// ignored, since calibration is about the sensor's own pixels.
+/// ignored, since calibration is about the sensor's own pixels, and so is transparency. What a file
+/// is, its first bytes tell, not its name. Of animated PNGs and TIFFs of several pages the first
+/// picture is read.
 ///
 /// Images of 16 bits are scaled to 8: the smallest of 8, 10, 12, 14 and 16 bits that holds the
 /// brightest pixel becomes 0..255, because industrial cameras store 10 or 12 bits in files of 16,

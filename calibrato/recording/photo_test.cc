@@ -91,6 +91,34 @@ TEST_F(PhotoTest, ScalesSixteenBitsWithoutClipping) {
   }
 }
 
+TEST_F(PhotoTest, IgnoresTransparency) {
+  cv::Mat picture(kHeight, kWidth, CV_8UC4, cv::Scalar(200, 100, 50, 0));
+  EXPECT_NEAR(Read(Encoded(picture, ".png")).pixels.at(1234), 96.45, 1.5);
+}
+
+TEST_F(PhotoTest, GoesByWhatAFileIsNotByItsName) {
+  const std::string path = folder_.Write("photo.jpg", Encoded(Picture(), ".png"));
+  EXPECT_EQ(ReadPhoto(path).pixels, PixelsOf(Picture()));
+}
+
+TEST_F(PhotoTest, ReadsImagesTwentyThousandPixelsWide) {
+  const cv::Mat picture(40, 20'000, CV_8UC1, cv::Scalar(77));
+  const GreyImage image = Read(Encoded(picture, ".png"));
+  EXPECT_EQ(image.resolution, (Resolution{20'000, 40}));
+  EXPECT_EQ(image.pixels.back(), 77);
+}
+
+TEST_F(PhotoTest, ReadsTheFirstOfSeveralPages) {
+  const cv::Mat other(kHeight, kWidth, CV_8UC1, cv::Scalar(9));
+  const std::string path = folder_.path() + "/pages.tiff";
+  ASSERT_TRUE(cv::imwritemulti(path, std::vector<cv::Mat>{Picture(), other}));
+  EXPECT_EQ(ReadPhoto(path).pixels, PixelsOf(Picture()));
+}
+
+TEST_F(PhotoTest, RefusesAGif) {
+  EXPECT_THAT(ErrorOf("GIF89a and some frames"), HasSubstr("give PNG, JPEG, BMP, TIFF or PGM"));
+}
+
 TEST_F(PhotoTest, IgnoresTheOrientationNoted) {
   // A JPEG whose EXIF asks to be turned by a quarter (orientation 6).
   using namespace std::string_literals;

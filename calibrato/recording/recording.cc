@@ -12,6 +12,7 @@
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/value.h"
 #include "calibrato/recording/corner_list.h"
+#include "calibrato/recording/image_list.h"
 
 namespace calibrato {
 namespace {
@@ -63,6 +64,18 @@ struct Photos {
   std::optional<std::string> unstamped;  ///< The first without a stamp.
 };
 
+void SortByStamp(const fs::path& folder, std::vector<ImageFile>* files) {
+  std::stable_sort(files->begin(), files->end(),
+                   [](const ImageFile& a, const ImageFile& b) { return a.stamp < b.stamp; });
+  const auto twin =
+      std::adjacent_find(files->begin(), files->end(),
+                         [](const ImageFile& a, const ImageFile& b) { return a.stamp == b.stamp; });
+  if (twin != files->end()) {
+    throw InputError({"two images of one stamp", folder.string(),
+                      twin->name + " and " + std::next(twin)->name, "remove one of them"});
+  }
+}
+
 Photos PhotosOf(const fs::path& folder, const std::vector<std::string>& names) {
   Photos photos;
   for (const std::string& name : names) {
@@ -74,16 +87,23 @@ Photos PhotosOf(const fs::path& folder, const std::vector<std::string>& names) {
     for (ImageFile& file : photos.files) file.stamp = Time();
     return photos;
   }
-  std::stable_sort(photos.files.begin(), photos.files.end(),
-                   [](const ImageFile& a, const ImageFile& b) { return a.stamp < b.stamp; });
-  const auto twin =
-      std::adjacent_find(photos.files.begin(), photos.files.end(),
-                         [](const ImageFile& a, const ImageFile& b) { return a.stamp == b.stamp; });
-  if (twin != photos.files.end()) {
-    throw InputError({"two images of one stamp", folder.string(),
-                      twin->name + " and " + std::next(twin)->name, "remove one of them"});
-  }
+  SortByStamp(folder, &photos.files);
   return photos;
+}
+
+// The images that EuRoC's data.csv lists.
+std::vector<ImageFile> ListedImages(const fs::path& list, const fs::path& folder) {
+  std::vector<ImageFile> files;
+  for (ListedImage& image : ReadImageList(list.string())) {
+    const fs::path path = folder / image.name;
+    if (!IsFile(path)) {
+      throw InputError({"listed image is missing", path.string(), "it stands in " + list.string(),
+                        "add it or remove its line"});
+    }
+    files.push_back({std::move(image.name), path.string(), image.stamp});
+  }
+  SortByStamp(folder, &files);
+  return files;
 }
 
 // How many of cam0, cam1, .. are there, up to the first that is missing; one behind a gap is
@@ -179,7 +199,10 @@ std::vector<CameraRecording> CameraFolders(const std::string& path) {
     Photos photos = PhotosOf(folder, names);
     const bool some_have_stamps = std::any_of(
         names.begin(), names.end(), [](const std::string& n) { return StampOf(n).has_value(); });
-    if (photos.unstamped && some_have_stamps) {
+    const fs::path list = fs::path(path) / name / "data.csv";
+    if (photos.unstamped && IsFile(list)) {
+      photos.files = ListedImages(list, folder);
+    } else if (photos.unstamped && some_have_stamps) {
       throw InputError({"image without a stamp", (folder / *photos.unstamped).string(),
                         "the names of others are their stamps in nanoseconds",
                         "rename it or move it away"});
@@ -234,11 +257,21 @@ void CheckPairs(const std::string& path, const std::vector<CameraRecording>& cam
   }
 }
 
+// The folder itself, or EuRoC's mav0 in it.
+std::string RootOf(const std::string& path, const RecordingOptions& options) {
+  const fs::path inner = fs::path(path) / "mav0";
+  const bool has_cameras =
+      CornerListOf(path, 0).has_value() || IsFolder(fs::path(path) / CameraName(0));
+  return !has_cameras && options.image_globs.empty() && IsFolder(inner) ? inner.string() : path;
+}
+
 }  // namespace
 
-Recording OpenRecording(const std::string& path, const RecordingOptions& options) {
+Recording OpenRecording(const std::string& given_path, const RecordingOptions& options) {
+  const std::string path = RootOf(given_path, options);
   const std::vector<std::string> images = ListImages(path);  // throws unless a folder
-  Recording recording{path, {}};
+  Recording recording{given_path, {}, {}};
+  if (options.with_imus) recording.imus = OpenImuRecordings(path);
   if (const int num_lists = CountCornerLists(path); num_lists > 0) {
     if (!options.image_globs.empty()) {
       throw InputError({"no image matches '" + options.image_globs.front() + "'", path,

@@ -120,6 +120,38 @@ TEST_F(RecordingTest, OpensFoldersOfStampedImagesInOrderOfTime) {
   EXPECT_EQ(Images(recording.cameras[1])[0].stamp, Time::FromNanoseconds(10000000001));
 }
 
+TEST_F(RecordingTest, EntersEurocsFolderWithItsImu) {
+  Touch({"mav0/cam0/data/10000000000.png", "mav0/cam0/data/10050000000.png"});
+  folder_.Write("mav0/cam0/data.csv", "#timestamp [ns],filename\n");
+  folder_.Write("mav0/imu0/data.csv",
+                "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+                "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n"
+                "10000000000,1,2,3,4,5,6\n");
+  Recording recording = Open();
+  ASSERT_EQ(recording.cameras.size(), 1u);
+  EXPECT_THAT(Names(recording.cameras[0]), ElementsAre("10000000000.png", "10050000000.png"));
+  ASSERT_EQ(recording.imus.size(), 1u);
+  EXPECT_EQ(recording.imus[0].stream.accel[0].value, Eigen::Vector3d(4.0, 5.0, 6.0));
+  RecordingOptions options;
+  options.with_imus = false;
+  EXPECT_TRUE(Open(options).imus.empty());
+}
+
+TEST_F(RecordingTest, TakesStampsFromEurocsListWhereNamesHaveNone) {
+  Touch({"cam0/data/a.png", "cam0/data/b.png", "cam0/data/c.png"});
+  folder_.Write("cam0/data.csv", "#timestamp [ns],filename\n30,a.png\n20, b.png\r\n");
+  const Recording recording = Open();
+  EXPECT_THAT(Names(recording.cameras[0]), ElementsAre("b.png", "a.png"));
+  EXPECT_EQ(Images(recording.cameras[0])[0].stamp, Time::FromNanoseconds(20));
+  EXPECT_TRUE(recording.imus.empty());
+  folder_.Write("cam0/data.csv", "timestamp,filename\n20,b.png\n20,a.png\n");
+  EXPECT_THAT(ErrorOf(), HasSubstr("two images of one stamp"));
+  folder_.Write("cam0/data.csv", "30,a.png\n31,d.png\n");
+  EXPECT_THAT(ErrorOf(), HasSubstr("listed image is missing"));
+  folder_.Write("cam0/data.csv", "30,a.png\n31.5,b.png\n");
+  EXPECT_THAT(ErrorOf(), HasSubstr("data.csv line 2"));
+}
+
 TEST_F(RecordingTest, OpensPhotosOfAnyFormatInOrderOfTheirNames) {
   Touch({"b.JPG", "a.jpeg", "c.Tif", "d.tiff", "e.bmp", "f.pgm", "g.png", "notes.txt", ".h.png",
          "board.yaml"});

@@ -66,16 +66,29 @@ testing::AssertionResult Says(const std::string& drawn, const std::string& words
 
 TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
   const std::string drawn =
-      Draw({CameraDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest()});
+      Draw({CameraDocumentForTest(), CameraImuDocumentForTest(), LearnDocumentForTest(),
+            Table1DocumentForTest()});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "plot-failed"));
   EXPECT_FALSE(Says(drawn, "class=\"empty\""));
   EXPECT_TRUE(Says(drawn, "Usable, with the reservations below."));
   EXPECT_TRUE(Says(drawn, "the board's size varies little"));
+  // Of two cameras, each with its own pictures; the second is drawn by angles.
+  EXPECT_TRUE(Says(drawn, "Baseline 83.03"));
+  EXPECT_TRUE(Says(drawn, "How far the lens moves a point"));
+  EXPECT_TRUE(Says(drawn, "What the lens does to angles"));
+  EXPECT_TRUE(Says(drawn, "At 1.2 m: median 0.075 px, worst 0.3 px."));
+  EXPECT_TRUE(Says(drawn, "left26.jpg (7.1 px)"));
+  EXPECT_TRUE(Says(drawn, "The recording does not determine the result."));
+  EXPECT_TRUE(Says(drawn, "translation along y is not observable"));
+  EXPECT_TRUE(Says(drawn, "gyroscope residuals 1.1 times the stated noise"));
   EXPECT_TRUE(Says(drawn, "Best return 2.318 over 300 episodes."));
   EXPECT_TRUE(Says(drawn,
                    "learned has 0.55 times the error of handcrafted (95 % interval 0.495 to "
                    "0.605), over 40 rigs: better, and more than chance."));
+  EXPECT_TRUE(Says(drawn,
+                   "learned at random's path has 0.31 times the error of random (95 % interval "
+                   "0.26 to 0.358), over 40 rigs: better, and more than chance."));
   const std::string console = Console();
   EXPECT_FALSE(Says(console, "Uncaught")) << console;
   EXPECT_FALSE(Says(console, "Content Security Policy")) << console;
@@ -93,7 +106,8 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
   broken.Set("kind", "camera").Set("cameras", Value::Array().Append(Value()));
   const std::string drawn =
       Draw({Value::Object().Set("kind", "horoscope").Set("luck", 7), camera,
-            Value::Object().Set("kind", "learn"), broken, Value::Object().Set("kind", "table1")});
+            Value::Object().Set("kind", "learn"), broken, Value::Object().Set("kind", "table1"),
+            Value::Object().Set("kind", "camera-imu"), Value::Object().Set("kind", "diff")});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "undefined"));
   EXPECT_TRUE(Says(drawn, "This page cannot draw results of kind “horoscope”."));
@@ -103,6 +117,8 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
   EXPECT_TRUE(Says(drawn, "No episode of the training was handed over."));
   EXPECT_TRUE(Says(drawn, "This part could not be drawn"));
   EXPECT_TRUE(Says(drawn, "Nothing was compared."));
+  EXPECT_TRUE(Says(drawn, "There is no estimate."));
+  EXPECT_TRUE(Says(drawn, "No camera was compared."));
   EXPECT_FALSE(Says(drawn, "<b id="));
   EXPECT_TRUE(Says(drawn, "&lt;b id="));
 }

@@ -160,6 +160,190 @@ Value TrainingLine(int episode, const std::string& kind, double progress, Rng* r
   return line;
 }
 
+// The projection uncertainty over an image: least in the middle, up to `worst` in the corners.
+Value UncertaintyMap(double worst) {
+  Value rows = Value::Array();
+  for (int row = 0; row < 24; ++row) {
+    std::vector<double> numbers;
+    for (int column = 0; column < 32; ++column) {
+      const double off = std::hypot((column - 15.5) / 15.5, (row - 11.5) / 11.5) / std::sqrt(2.0);
+      numbers.push_back(Rounded(worst * (0.1 + 0.9 * off * off * off)));
+    }
+    rows.Append(Value::Numbers(numbers));
+  }
+  return std::move(
+      Value::Object().Set("median_px", 0.25 * worst).Set("worst_px", worst).Set("values_px", rows));
+}
+
+Value Checks(Rng* rng) {
+  Value mean_u = Value::Array();
+  Value mean_v = Value::Array();
+  for (int row = 0; row < 6; ++row) {
+    std::vector<double> u;
+    std::vector<double> v;
+    for (int column = 0; column < 8; ++column) {
+      u.push_back(Rounded(rng->Normal(0, 0.02)));
+      v.push_back(Rounded(rng->Normal(0, 0.02)));
+    }
+    mean_u.Append(Value::Numbers(u));
+    mean_v.Append(Value::Numbers(v));
+  }
+  return std::move(
+      Value::Object()
+          .Set("split", Value::Object()
+                            .Set("probability", 0.31)
+                            .Set("in_sample_stddev_px", 0.1)
+                            .Set("held_out_stddev_px", 0.11)
+                            .Set("expected_held_out_stddev_px", 0.105))
+          .Set("residual_field", Value::Object()
+                                     .Set("mean_u_px", mean_u)
+                                     .Set("mean_v_px", mean_v)
+                                     .Set("systematic_rms_px", 0.012)
+                                     .Set("probability", 0.2))
+          .Set("bending", Value::Object().Set("depth_m", 7.1e-4).Set("probability", 1e-5))
+          .Set("stretch", Value::Object().Set("stretch", 3e-4).Set("probability", 0.4)));
+}
+
+Value Rejected() {
+  Value corner = Value::Object();
+  corner.Set("view", "left3.jpg").Set("corner_id", 7).Set("residual_px", Numbers({2.1, -3.4}));
+  Value view = Value::Object();
+  view.Set("name", "left26.jpg")
+      .Set("reason", "does not fit")
+      .Set("num_corners", 42)
+      .Set("rms_px", 7.12);
+  return std::move(Value::Object()
+                       .Set("num_corners", 1)
+                       .Set("corners", Value::Array().Append(corner))
+                       .Set("views", Value::Array().Append(view))
+                       .Set("images_without_board", 2)
+                       .Set("detection", Value::Object().Set("corners_near_border", 5)));
+}
+
+// One row of the board, bent and straight.
+Value Straightened() {
+  Value pixels = Value::Array();
+  Value straight = Value::Array();
+  for (int k = 0; k < 7; ++k) {
+    pixels.Append(Numbers({100.0 + 60 * k, 80.0 + 2 * (k - 3) * (k - 3)}));
+    straight.Append(Numbers({100.0 + 60 * k, 90.0}));
+  }
+  return std::move(Value::Object()
+                       .Set("name", "left4.jpg")
+                       .Set("pixels", pixels)
+                       .Set("straightened", straight)
+                       .Set("lines", Value::Array().Append(Numbers({0, 1, 2, 3, 4, 5, 6}))));
+}
+
+// What a series of this size looks like over 30 s, an envelope an axis.
+Value Envelopes(double size, double frequency, Rng* rng) {
+  Value axes = Value::Array();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> time;
+    std::vector<double> low;
+    std::vector<double> high;
+    for (int k = 0; k < 300; ++k) {
+      time.push_back(0.1 * k);
+      const double middle = size * std::sin(frequency * 0.1 * k + axis);
+      low.push_back(Rounded(middle - 0.2 * size * rng->Uniform()));
+      high.push_back(Rounded(middle + 0.2 * size * rng->Uniform()));
+    }
+    axes.Append(Value::Object()
+                    .Set("time_s", Value::Numbers(time))
+                    .Set("low", Value::Numbers(low))
+                    .Set("high", Value::Numbers(high)));
+  }
+  return axes;
+}
+
+Value SensorPlot(double size, double stddev, Rng* rng) {
+  const Value intervals = Envelopes(0.01, 3.0, rng);
+  return std::move(Value::Object()
+                       .Set("measured", Envelopes(size, 2.0, rng))
+                       .Set("predicted", Envelopes(size, 2.0, rng))
+                       .Set("residual", Envelopes(2.0 * stddev, 40.0, rng))
+                       .Set("stddev", stddev)
+                       .Set("outliers", Value::Array().Append(Numbers({12.0, 3 * size, 0.0, 0.0})))
+                       .Set("interval_ms", intervals.elements()[0])
+                       .Set("median_interval_ms", 5.0));
+}
+
+Value CameraImuPlots() {
+  Rng rng(4);
+  Value path = Value::Array();
+  Value axes = Value::Array();
+  for (int k = 0; k < 400; ++k) {
+    const double t = 0.05 * k;
+    path.Append(Numbers({Rounded(0.15 + 0.1 * std::sin(t)), Rounded(0.18 + 0.1 * std::cos(1.7 * t)),
+                         Rounded(0.7 + 0.05 * std::sin(2.3 * t))}));
+    if (k % 20 == 0) {
+      axes.Append(Numbers({Rounded(0.15 + 0.1 * std::sin(t)),
+                           Rounded(0.18 + 0.1 * std::cos(1.7 * t)), 0.7, 0.0, 0.0, -1.0}));
+    }
+  }
+  Value corners = Value::Array();
+  for (int k = 0; k < 800; ++k) {
+    corners.Append(Numbers({0.03 * k, Rounded(rng.Normal(0, 0.1)), Rounded(rng.Normal(0, 0.1))}));
+  }
+  Value bias = Value::Array();
+  std::vector<double> bias_time;
+  for (int k = 0; k < 60; ++k) {
+    bias_time.push_back(0.5 * k);
+    bias.Append(Numbers({0.01, -0.02 + 1e-5 * k, 0.005}));
+  }
+  Value imu = Value::Object();
+  imu.Set("gyro", SensorPlot(0.8, 2e-3, &rng))
+      .Set("accel", SensorPlot(4.0, 3e-2, &rng))
+      .Set("bias_time_s", Value::Numbers(bias_time))
+      .Set("gyro_bias", bias)
+      .Set("accel_bias", bias)
+      .Set("gyro_walk", 2e-5)
+      .Set("accel_walk", 3e-3);
+  Value camera = Value::Object();
+  camera.Set("rms", Envelopes(0.14, 1.0, &rng).elements()[0])
+      .Set("corner_residuals", corners)
+      .Set("interval_ms", Envelopes(0.5, 1.0, &rng).elements()[0])
+      .Set("median_interval_ms", 50.0);
+  Value outline = Value::Array();
+  for (const auto& [x, y] : {std::pair{0.0, 0.0}, {0.3, 0.0}, {0.3, 0.36}, {0.0, 0.36}}) {
+    outline.Append(Numbers({x, y, 0.0}));
+  }
+  Value knowledge = Value::Object();
+  knowledge.Set("time_s", Numbers({5, 10, 20, 30}))
+      .Set("rotation_sigma_rad", Numbers({4e-3, 2e-3, 1e-3, 8e-4}))
+      .Set("translation_sigma_m", Numbers({9e-3, 4e-3, 2e-3, 1.4e-3}))
+      .Set("time_offset_sigma_s", Numbers({2e-4, 1e-4, 6e-5, 5e-5}));
+  return std::move(Value::Object()
+                       .Set("duration_s", 30.0)
+                       .Set("imus", Value::Array().Append(imu))
+                       .Set("cameras", Value::Array().Append(camera))
+                       .Set("corner_noise_px", 0.1)
+                       .Set("trajectory_g", path)
+                       .Set("axis_g", axes)
+                       .Set("board_outline_g", outline)
+                       .Set("knowledge", knowledge));
+}
+
+Value CameraImuCovariance() {
+  const std::vector<std::string> names = {"rot_x", "rot_y", "rot_z",      "pos_x",
+                                          "pos_y", "pos_z", "time_offset"};
+  Value labels = Value::Array();
+  Value matrix = Value::Array();
+  for (size_t i = 0; i < names.size(); ++i) {
+    labels.Append("cam0." + names[i]);
+    std::vector<double> row;
+    for (size_t j = 0; j < names.size(); ++j) row.push_back(i == j ? 1e-6 : 2e-7);
+    matrix.Append(Value::Numbers(row));
+  }
+  return std::move(Value::Object().Set("names", labels).Set("matrix", matrix));
+}
+
+Value Words(const std::vector<std::string>& words) {
+  Value value = Value::Array();
+  for (const std::string& word : words) value.Append(word);
+  return value;
+}
+
 Value Row(const std::string& policy, double mean, double ratio, double path_length_m) {
   return std::move(Value::Object()
                        .Set("task", "intrinsic")
@@ -172,6 +356,8 @@ Value Row(const std::string& policy, double mean, double ratio, double path_leng
                        .Set("median_error_percent", 0.92 * mean)
                        .Set("ratio_to_handcrafted", ratio)
                        .Set("ratio_ci95", Numbers({0.9 * ratio, 1.1 * ratio}))
+                       .Set("ratio_to_random", ratio / 2.1)
+                       .Set("ratio_to_random_ci95", Numbers({0.4 * ratio, 0.55 * ratio}))
                        .Set("path_length_m", path_length_m)
                        .Set("path_length_original_m", 0.978 * path_length_m)
                        .Set("motion_s", 20.0)
@@ -198,7 +384,21 @@ Value CameraDocumentForTest() {
       .Set("reprojection_rms_px", 0.1413)
       .Set("reprojection_rms_all_px", 0.1502)
       .Set("num_views", 25)
-      .Set("num_corners", 25 * 42);
+      .Set("num_corners", 25 * 42)
+      .Set("rejected", Rejected())
+      .Set("checks", Checks(&rng))
+      .Set("projection_uncertainty", Value::Object()
+                                         .Set("distance_m", 1.2)
+                                         .Set("at_distance", UncertaintyMap(0.3))
+                                         .Set("at_infinity", UncertaintyMap(0.5)));
+  // A second camera, 83 mm to the right of the first.
+  Value second = camera;
+  Value T_cn_cnm1 = Value::Array();
+  T_cn_cnm1.Append(Numbers({1, 0, 0, -0.083}))
+      .Append(Numbers({0, 1, 0, 0.001}))
+      .Append(Numbers({0, 0, 1, 0.002}))
+      .Append(Numbers({0, 0, 0, 1}));
+  second.Set("T_cn_cnm1", T_cn_cnm1).Set("num_shared_frames", 24);
   Value finding = Value::Object();
   finding.Set("severity", "warn")
       .Set("what", "the board's size varies little: 0.31 of the wanted range of 0.4")
@@ -208,8 +408,21 @@ Value CameraDocumentForTest() {
       .Set("noise_stddev_px", 0.1)
       .Set("views", views)
       .Set("board_points_g", points)
-      .Set("images_without_board", Value::Array().Append("left97.jpg").Append("left98.jpg"))
+      .Set("images_without_board", Words({"left97.jpg", "left98.jpg"}))
+      .Set("rejected_corners", Value::Array().Append(Value::Object()
+                                                         .Set("view", "left3.jpg")
+                                                         .Set("pixel", Numbers({400, 300}))
+                                                         .Set("residual", Numbers({2.1, -3.4}))))
+      .Set("straightened_view", Straightened())
+      .Set("lens_curve", Value::Object()
+                             .Set("angle_rad", Numbers({0.0, 0.2, 0.4, 0.6}))
+                             .Set("radius_px", Numbers({0.0, 118.0, 245.0, 390.0})))
       .Set("distortion_curve", Distortion());
+  // The second camera is a fisheye, drawn by angles.
+  Value second_plots = plots;
+  second_plots.Set("lens_curve", Value::Object()
+                                     .Set("angle_rad", Numbers({0.0, 0.5, 1.0, 1.5}))
+                                     .Set("radius_px", Numbers({0.0, 130.0, 255.0, 370.0})));
   Value coverage = Value::Object();
   coverage.Set("x", 1.0).Set("y", 0.93).Set("size", 0.775).Set("skew", 1.0);
   Value information = Value::Object();
@@ -222,11 +435,69 @@ Value CameraDocumentForTest() {
                        .Set("termination", "converged")
                        .Set("verdict", "warn")
                        .Set("findings", Value::Array().Append(finding))
-                       .Set("cameras", Value::Array().Append(camera))
+                       .Set("cameras", Value::Array().Append(camera).Append(second))
                        .Set("covariance", CameraCovariance())
                        .Set("coverage", coverage)
                        .Set("information", information)
-                       .Set("plots", plots));
+                       .Set("plots", plots)
+                       .Set("plots_cam1", second_plots));
+}
+
+Value CameraImuDocumentForTest() {
+  Value T_cam_imu = Value::Array();
+  T_cam_imu.Append(Numbers({0, -1, 0, 0.052}))
+      .Append(Numbers({1, 0, 0, -0.031}))
+      .Append(Numbers({0, 0, 1, 0.024}))
+      .Append(Numbers({0, 0, 0, 1}));
+  Value camera = Value::Object();
+  camera.Set("T_cam_imu", T_cam_imu)
+      .Set("time_offset_s", 0.0073)
+      .Set("rotation_sigma_rad", Numbers({2e-4, 3e-4, 2e-4}))
+      .Set("translation_sigma_m", Value::Array().Append(8e-4).Append(Value()).Append(7e-3))
+      .Set("time_offset_sigma_s", 3e-5)
+      .Set("verdicts", Value::Object()
+                           .Set("rotation", Words({"pass", "pass", "pass"}))
+                           .Set("translation", Words({"pass", "inconclusive", "warn"}))
+                           .Set("time_offset", "pass"))
+      .Set("split",
+           Value::Object()
+               .Set("difference_rad_m_s", Numbers({1e-4, -2e-4, 1e-4, 5e-4, -1e-3, 4e-3, 2e-5}))
+               .Set("sigma_rad_m_s", Numbers({4e-4, 6e-4, 4e-4, 1.6e-3, 0.05, 0.014, 6e-5}))
+               .Set("probability", 0.7))
+      .Set("rejected_views", Words({"1403709383937837056"}))
+      .Set("num_outliers", 3);
+  Value imu = Value::Object();
+  imu.Set("model", "calibrated")
+      .Set("gyro_bias", Numbers({0.01, -0.02, 0.005}))
+      .Set("accel_bias", Numbers({0.05, 0.1, -0.08}))
+      .Set("gyro", Value::Object().Set("rms", 2e-3).Set("normalised", 1.1).Set("num_outliers", 1))
+      .Set("accel", Value::Object().Set("rms", 0.03).Set("normalised", 0.9));
+  Value finding = Value::Object();
+  finding.Set("severity", "inconclusive")
+      .Set("what", "cam0: translation along y is not observable in this motion")
+      .Set("remedy", "turn the camera to and fro about its x (look up and down) faster");
+  return std::move(
+      Value::Object()
+          .Set("kind", "camera-imu")
+          .Set("termination", "converged")
+          .Set("verdict", "inconclusive")
+          .Set("findings", Value::Array().Append(finding))
+          .Set("cameras", Value::Array().Append(camera))
+          .Set("imus", Value::Array().Append(imu))
+          .Set("gravity_g", Numbers({-9.7, 0.9, 1.1}))
+          .Set("knot_spacing_s", 0.1)
+          .Set("num_iterations", 9)
+          .Set("covariance", CameraImuCovariance())
+          .Set("information", Value::Object()
+                                  .Set("a_optimality", 3.2)
+                                  .Set("d_optimality", 1e-3)
+                                  .Set("e_optimality", 2.1)
+                                  .Set("eigenvalues", Numbers({0.01, 0.02, 0.04, 0.3, 0.7, 2.1})))
+          .Set("residuals", Value::Object()
+                                .Set("reprojection_rms_px", 0.143)
+                                .Set("gyro_normalised", 1.1)
+                                .Set("accel_normalised", 0.9))
+          .Set("plots", CameraImuPlots()));
 }
 
 Value LearnDocumentForTest() {
@@ -275,6 +546,7 @@ Value Table1DocumentForTest() {
   add("random", 0.46, 2.1, 0.06, 8.4);
   add("handcrafted", 0.22, 1.0, 0.12, 11.364);
   add("learned", 0.12, 0.55, 0.16, 9.8);
+  add("learned at random's path", 0.14, 0.65, 0.14, 8.4);
   Value plots = Value::Object();
   plots.Set("errors", errors)
       .Set("motions", motions)

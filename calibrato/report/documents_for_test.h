@@ -6,6 +6,7 @@ namespace calibrato {
 
 /// One document of each kind, with every member that the page draws, of plausible numbers.
 Value CameraDocumentForTest();
+Value CameraImuDocumentForTest();
 Value LearnDocumentForTest();
 Value Table1DocumentForTest();
 

@@ -15,14 +15,25 @@ namespace calibrato {
 /// Every other member is optional; what is missing or null is said in words. Long lists are best
 /// rounded by whoever makes them: the page takes each number as long as it comes.
 ///
-/// "camera": camera result.json, and "plots":
+/// "camera": camera result.json with, for each camera, "projection_uncertainty" and "checks"
+/// (diagnosis/checks_document.h) and "rejected" (docs/formats.md); and "plots" of camera 0,
+/// "plots_cam1" of camera 1 ..:
 ///     {"resolution": [width, height],      [px]
 ///      "noise_stddev_px",
 ///      "views": [{"name", "rms_px", "pixels": [[u, v]..], "residuals": [[du, dv]..],
 ///                 "T_c_g": four rows of four}..],
 ///      "board_points_g": [[x, y, z]..],    [m]
 ///      "images_without_board": [name..],
-///      "distortion_curve": {"radius_px": [..], "shift_px": [..]}}
+///      "rejected_corners": [{"view", "pixel": [u, v], "residual": [du, dv]}..],
+///      "distortion_curve": {"radius_px": [..], "shift_px": [..]},
+///      "lens_curve": {"angle_rad": [..], "radius_px": [..]},   drawn instead beyond 1 rad
+///      "straightened_view": {"name", "pixels": [[u, v]..], "straightened": [[u, v]..],
+///                            "lines": [[indices]..]}, or with "image" and "straightened_image",
+///                            data URIs, instead of the three}
+///
+/// "camera-imu": camera-imu result.json, and "plots" (diagnosis/camera_imu_plots.h).
+///
+/// "diff": as `calibrato diff` prints it (diagnosis/comparison_document.h).
 ///
 /// "learn": learn result.json, and "training": the lines of training.jsonl, and "motion": one of
 /// the motions below, or an array of them; it may carry a "board_outline_b" of its own.

@@ -41,7 +41,8 @@ Value EmbeddedDocuments(const std::string& page) {
 }
 
 std::vector<Value> AllDocuments() {
-  return {CameraDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest()};
+  return {CameraDocumentForTest(), CameraImuDocumentForTest(), LearnDocumentForTest(),
+          Table1DocumentForTest()};
 }
 
 TEST(ReportHtml, AsksForNothingFromAnywhere) {

@@ -32,6 +32,48 @@ TEST(Board, RowsRunAlongXAndColumnsAlongY) {
             1e-15);
 }
 
+TEST(Board, TagsOfAnAprilGridAreCountedFromTheLowerLeftAndTheirCornersAnticlockwise) {
+  const Board board = AprilGrid{2, 3, 0.1, 0.3};
+  const Eigen::Matrix3Xd points = BoardPoints(board);
+  ASSERT_EQ(points.cols(), 24);
+  // Tag (1, 2) has the number 5; the pitch is 0.13 m.
+  EXPECT_LT((points.col(20) - Eigen::Vector3d(0.26, 0.13, 0.0)).norm(), 1e-15);
+  EXPECT_LT((points.col(21) - Eigen::Vector3d(0.36, 0.13, 0.0)).norm(), 1e-15);
+  EXPECT_LT((points.col(22) - Eigen::Vector3d(0.36, 0.23, 0.0)).norm(), 1e-15);
+  EXPECT_LT((points.col(23) - Eigen::Vector3d(0.26, 0.23, 0.0)).norm(), 1e-15);
+  EXPECT_EQ(PointsPerTag(board), 4);
+}
+
+TEST(Board, CirclesStandAsKalibrAndOpenCvPutThem) {
+  const Eigen::Matrix3Xd symmetric = BoardPoints(CircleGrid{4, 5, 0.02, false});
+  EXPECT_LT((symmetric.col(2 * 5 + 3) - Eigen::Vector3d(0.04, 0.06, 0.0)).norm(), 1e-15);
+  const Eigen::Matrix3Xd asymmetric = BoardPoints(CircleGrid{11, 4, 0.02, true});
+  EXPECT_LT((asymmetric.col(2 * 4 + 3) - Eigen::Vector3d(0.12, 0.04, 0.0)).norm(), 1e-15);
+  EXPECT_LT((asymmetric.col(3 * 4 + 1) - Eigen::Vector3d(0.06, 0.06, 0.0)).norm(), 1e-15);
+}
+
+TEST(Board, CornersOfACharucoBoardAreThoseInside) {
+  const Eigen::Matrix3Xd points = BoardPoints(Charuco{6, 8, 0.04, 0.03, "DICT_5X5_100"});
+  ASSERT_EQ(points.cols(), 35);
+  EXPECT_LT((points.col(2 * 7 + 3) - Eigen::Vector3d(0.08, 0.12, 0.0)).norm(), 1e-15);
+}
+
+TEST(Board, NeighboursAreOneStepApart) {
+  const auto expect_steps = [](const Board& board, size_t count, double step_m) {
+    const Eigen::Matrix3Xd points = BoardPoints(board);
+    const auto pairs = NeighbouringPoints(board);
+    EXPECT_EQ(pairs.size(), count) << Describe(board);
+    for (const auto& [a, b] : pairs) {
+      EXPECT_NEAR((points.col(b) - points.col(a)).norm(), step_m, 1e-12) << Describe(board);
+    }
+  };
+  expect_steps(Checkerboard{6, 7, 0.06, 0.05}, 36, 0.05);
+  expect_steps(AprilGrid{2, 3, 0.1, 0.3}, 12, 0.1);
+  expect_steps(CircleGrid{4, 5, 0.02, false}, 16, 0.02);
+  expect_steps(CircleGrid{11, 4, 0.02, true}, 33, 0.04);
+  expect_steps(Charuco{6, 8, 0.04, 0.03, "DICT_5X5_100"}, 30, 0.04);
+}
+
 TEST(Board, ReadsKalibrsTargetFile) {
   std::vector<std::string> warnings;
   EXPECT_EQ(std::get<Checkerboard>(BoardFromValue(ParseYaml(kYaml, "board.yaml"), &warnings)),
@@ -39,9 +81,50 @@ TEST(Board, ReadsKalibrsTargetFile) {
   EXPECT_TRUE(warnings.empty());
 }
 
+TEST(Board, ReadsKalibrsOtherTargets) {
+  const auto read = [](const std::string& yaml) {
+    std::vector<std::string> warnings;
+    Board board = BoardFromValue(ParseYaml(yaml, "board.yaml"), &warnings);
+    EXPECT_TRUE(warnings.empty()) << warnings[0];
+    return board;
+  };
+  EXPECT_EQ(
+      read("target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 5\ntagSize: 0.088\ntagSpacing: 0.3\n"),
+      Board(AprilGrid{5, 6, 0.088, 0.3}));
+  const std::string circles =
+      "target_type: 'circlegrid'\ntargetCols: 4\ntargetRows: 11\nspacingMeters: 0.02\n";
+  EXPECT_EQ(read(circles), Board(CircleGrid{11, 4, 0.02, false}));
+  EXPECT_EQ(read(circles + "asymmetricGrid: true\n"), Board(CircleGrid{11, 4, 0.02, true}));
+}
+
 TEST(Board, RoundTrip) {
-  const Board board = Checkerboard{9, 6, 0.025, 0.0251};
-  EXPECT_EQ(BoardFromValue(ParseYaml(ToYaml(ToValue(board)), "x"), nullptr), board);
+  for (const Board& board :
+       {Board(Checkerboard{9, 6, 0.025, 0.0251}), Board(AprilGrid{6, 7, 0.088, 0.3}),
+        Board(CircleGrid{11, 4, 0.02, true}), Board(CircleGrid{4, 5, 0.03, false}),
+        Board(Charuco{6, 8, 0.04, 0.03, "DICT_APRILTAG_36h11"})}) {
+    EXPECT_EQ(BoardFromValue(ParseYaml(ToYaml(ToValue(board)), "x"), nullptr), board)
+        << Describe(board);
+  }
+}
+
+TEST(Board, MoreTagsThanThereAreIsAnErrorWithItsLine) {
+  const std::string error = ErrorOf(
+      "target_type: 'aprilgrid'\ntagCols: 25\ntagRows: 24\ntagSize: 0.088\ntagSpacing: 0.3\n");
+  EXPECT_NE(error.find("line 2"), std::string::npos) << error;
+  EXPECT_NE(error.find("587"), std::string::npos) << error;
+}
+
+TEST(Board, MarkersMustFitAndBeKnownAndSuffice) {
+  const auto error_of = [](const std::string& marker, const std::string& dictionary) {
+    return ErrorOf(
+        "target_type: 'charuco'\ntargetCols: 11\ntargetRows: 10\nsquareSizeMeters: 0.04\n"
+        "markerSizeMeters: " +
+        marker + "\ndictionary: '" + dictionary + "'\n");
+  };
+  EXPECT_EQ(error_of("0.03", "DICT_5X5_100"), "");
+  EXPECT_NE(error_of("0.04", "DICT_5X5_100").find("line 5"), std::string::npos);
+  EXPECT_NE(error_of("0.03", "dict_5x5_100").find("did you mean DICT_5X5_100"), std::string::npos);
+  EXPECT_NE(error_of("0.03", "DICT_5X5_50").find("55 markers"), std::string::npos);
 }
 
 TEST(Board, ATypoIsAnErrorWithLineAndKeyAndTheNearestKey) {

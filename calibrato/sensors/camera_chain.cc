@@ -8,13 +8,40 @@
 namespace calibrato {
 namespace {
 
-// Kalibr splits a model's name into camera_model and distortion_model; "equidistant" is its long
-// form.
+// Kalibr splits a model's name into camera_model and distortion_model, and writes "equi" in full.
 std::string ModelName(const Value& camera) {
   const std::string projection = camera.At("camera_model").AsString();
   std::string distortion = camera.At("distortion_model").AsString();
   if (distortion == "equidistant") distortion = "equi";
   return projection + "-" + distortion;
+}
+
+CameraModel ModelFromValue(const Value& camera) {
+  const std::vector<double> intrinsics = camera.At("intrinsics").AsDoubles();
+  const Value* coefficients = camera.Find("distortion_coeffs");
+  std::vector<double> parameters = intrinsics;
+  if (coefficients != nullptr) {
+    const std::vector<double> distortion = coefficients->AsDoubles();
+    parameters.insert(parameters.end(), distortion.begin(), distortion.end());
+  }
+  const std::string name = ModelName(camera);
+  try {
+    const auto num_intrinsics = static_cast<size_t>(CameraModel::NumIntrinsics(name));
+    if (intrinsics.size() != num_intrinsics) {
+      std::string order;
+      for (size_t i = 0; i < num_intrinsics; ++i) {
+        order += (i == 0 ? "" : " ") + CameraModel::ParameterNames(name)[i];
+      }
+      throw InputError({"wrong number of intrinsics for " + name, "",
+                        "expected " + std::to_string(num_intrinsics) + ", got " +
+                            std::to_string(intrinsics.size()),
+                        "give " + order});
+    }
+    return {name, Eigen::Map<const Eigen::VectorXd>(parameters.data(),
+                                                    static_cast<Eigen::Index>(parameters.size()))};
+  } catch (const InputError& error) {
+    camera.Fail("bad camera", error.what(), "see docs/camera-models.md");
+  }
 }
 
 }  // namespace
@@ -65,19 +92,7 @@ std::vector<Camera> CameraChainFromValue(const Value& value, std::vector<std::st
            "rostopic", "T_cn_cnm1", "cam_overlaps", "T_cam_imu", "timeshift_cam_imu"});
       warnings->insert(warnings->end(), unknown.begin(), unknown.end());
     }
-    const std::vector<double> intrinsics = entry.At("intrinsics").AsDoubles();
-    const Value* coefficients = entry.Find("distortion_coeffs");
-    const std::vector<double> distortion =
-        coefficients != nullptr ? coefficients->AsDoubles() : std::vector<double>{};
-    Eigen::VectorXd parameters(intrinsics.size() + distortion.size());
-    parameters << Eigen::Map<const Eigen::VectorXd>(intrinsics.data(), intrinsics.size()),
-        Eigen::Map<const Eigen::VectorXd>(distortion.data(), distortion.size());
-    std::optional<CameraModel> model;
-    try {
-      model.emplace(ModelName(entry), parameters);
-    } catch (const InputError& error) {
-      entry.Fail("bad camera", error.what(), "see docs/camera-models.md");
-    }
+    const CameraModel model = ModelFromValue(entry);
     const std::vector<double> size = entry.At("resolution").AsDoubles(2);
     if (!(size[0] >= 1.0 && size[0] <= 1e5 && size[1] >= 1.0 && size[1] <= 1e5)) {
       entry.At("resolution")
@@ -85,7 +100,7 @@ std::vector<Camera> CameraChainFromValue(const Value& value, std::vector<std::st
                 "write resolution: [640, 480]");
     }
     const Value* topic = entry.Find("rostopic");
-    Camera camera{*model,
+    Camera camera{model,
                   {static_cast<int>(size[0]), static_cast<int>(size[1])},
                   topic != nullptr ? topic->AsString() : "/" + name + "/image_raw",
                   std::nullopt};
@@ -106,13 +121,12 @@ Value ToValue(const std::vector<Camera>& cameras) {
     const Camera& camera = cameras[i];
     const std::string name(camera.model.name());
     const size_t dash = name.find('-');
-    const Eigen::VectorXd parameters = camera.model.parameters();
+    const std::string distortion = name.substr(dash + 1);
     Value entry = Value::Object();
     entry.Set("camera_model", name.substr(0, dash))
-        .Set("intrinsics", Value::Numbers(Eigen::VectorXd(parameters.head<4>())))
-        .Set("distortion_model", name.substr(dash + 1))
-        .Set("distortion_coeffs",
-             Value::Numbers(Eigen::VectorXd(parameters.tail(parameters.size() - 4))));
+        .Set("intrinsics", Value::Numbers(camera.model.intrinsics()))
+        .Set("distortion_model", distortion == "equi" ? "equidistant" : distortion)
+        .Set("distortion_coeffs", Value::Numbers(camera.model.distortion()));
     Value resolution = Value::Array();
     resolution.Append(camera.resolution.width).Append(camera.resolution.height);
     entry.Set("resolution", std::move(resolution)).Set("rostopic", camera.rostopic);

@@ -18,8 +18,10 @@ struct Camera {
   std::optional<Rigid3> T_cn_cnm1;  ///< From the camera before it; none for the first.
 };
 
-/// Kalibr's camchain.yaml: cam0, cam1, .. in order. `radtan5` as a distortion_model is ours, not
-/// Kalibr's.
+/// Kalibr's camchain.yaml: cam0, cam1, .. in order. camera_model is pinhole, omni, ds or eucm;
+/// distortion_model none, radtan, equidistant or fov, or radtan5, which is ours, not Kalibr's. A
+/// pair that is no model (camera_model.h) is an error, and so is `intrinsics` or
+/// `distortion_coeffs` of the wrong length.
 /// @throws InputError with line and key. Unknown keys are appended to warnings (may be null).
 [[nodiscard]] std::vector<Camera> CameraChainFromValue(const Value& value,
                                                        std::vector<std::string>* warnings);

@@ -4,6 +4,7 @@
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/so3.h"
+#include "calibrato/sensors/lenses_for_test.h"
 
 namespace calibrato {
 namespace {
@@ -55,6 +56,50 @@ TEST(CameraChain, RoundTripKeepsEveryBit) {
   ASSERT_EQ(again.size(), 2U);
   EXPECT_EQ(again[0].model.parameters(), cameras[0].model.parameters());
   EXPECT_EQ(ToYaml(ToValue(again)), text);
+}
+
+TEST(CameraChain, EveryModelIsReadBackToTheBit) {
+  for (const Lens& lens : Lenses()) {
+    const std::vector<Camera> chain = {{Make(lens), {640, 480}, "/cam0/image_raw", std::nullopt}};
+    const std::string text = ToYaml(ToValue(chain));
+    const auto again = CameraChainFromValue(ParseYaml(text, "again.yaml"), nullptr);
+    ASSERT_EQ(again.size(), 1U) << lens.model;
+    EXPECT_EQ(again[0].model.name(), lens.model);
+    EXPECT_EQ(again[0].model.parameters(), chain[0].model.parameters()) << lens.model;
+  }
+}
+
+TEST(CameraChain, ModelsAreCalledAsInKalibr) {
+  const auto yaml = [](const std::string& projection, const std::string& intrinsics,
+                       const std::string& distortion, const std::string& coefficients) {
+    return "cam0:\n  camera_model: " + projection + "\n  intrinsics: " + intrinsics +
+           "\n  distortion_model: " + distortion + "\n  distortion_coeffs: " + coefficients +
+           "\n  resolution: [640, 480]\n";
+  };
+  const auto name = [](const std::string& text) {
+    return std::string(CameraChainFromValue(ParseYaml(text, "x"), nullptr)[0].model.name());
+  };
+  EXPECT_EQ(name(yaml("pinhole", "[2, 2, 3, 4]", "none", "[]")), "pinhole-none");
+  EXPECT_EQ(name(yaml("pinhole", "[2, 2, 3, 4]", "radtan", "[0, 0, 0, 0]")), "pinhole-radtan");
+  EXPECT_EQ(name(yaml("pinhole", "[2, 2, 3, 4]", "radtan5", "[0, 0, 0, 0, 0]")), "pinhole-radtan5");
+  EXPECT_EQ(name(yaml("pinhole", "[2, 2, 3, 4]", "equidistant", "[0, 0, 0, 0]")), "pinhole-equi");
+  EXPECT_EQ(name(yaml("pinhole", "[2, 2, 3, 4]", "fov", "[1]")), "pinhole-fov");
+  EXPECT_EQ(name(yaml("omni", "[1, 2, 2, 3, 4]", "none", "[]")), "omni-none");
+  EXPECT_EQ(name(yaml("omni", "[1, 2, 2, 3, 4]", "radtan", "[0, 0, 0, 0]")), "omni-radtan");
+  EXPECT_EQ(name(yaml("ds", "[0, 0.5, 2, 2, 3, 4]", "none", "[]")), "ds-none");
+  EXPECT_EQ(name(yaml("eucm", "[0.5, 1, 2, 2, 3, 4]", "none", "[]")), "eucm-none");
+
+  const std::string written = ToYaml(ToValue(CameraChainFromValue(
+      ParseYaml(yaml("pinhole", "[2, 2, 3, 4]", "equidistant", "[0, 0, 0, 0]"), "x"), nullptr)));
+  EXPECT_NE(written.find("distortion_model: equidistant"), std::string::npos) << written;
+
+  // The right number of parameters in all, but not in each list.
+  EXPECT_NE(ErrorOf(yaml("pinhole", "[2, 2, 3, 4, 0]", "radtan", "[0, 0, 0]"))
+                .find("expected 4, got 5; give fu fv pu pv"),
+            std::string::npos);
+  EXPECT_NE(ErrorOf(yaml("ds", "[0, 0.5, 2, 2, 3, 4]", "radtan", "[0, 0, 0, 0]"))
+                .find("unknown camera model 'ds-radtan'"),
+            std::string::npos);
 }
 
 TEST(CameraChain, AMissingKeyIsNamedWithItsCamera) {

@@ -1,12 +1,15 @@
 #include "calibrato/sensors/camera_model.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/expect_jacobian.h"
+#include "calibrato/sensors/lenses_for_test.h"
 
 namespace calibrato {
 namespace {
@@ -14,76 +17,27 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-struct Case {
-  std::string name;
-  std::vector<double> parameters;
-};
-
-// A plain lens, the barrel of a cheap one, a pincushion, one that turns back at a finite radius.
-const std::vector<Case> kCases = {
-    {"pinhole-none", {585.7561, 586.0, 320.5, 240.5}},
-    {"pinhole-radtan",
-     {458.654, 457.296, 367.215, 248.375, -0.28340811, 0.07395907, 0.00019, 1e-5}},
-    {"pinhole-radtan", {832.5, 832.53, 303.959, 206.585, -0.228601, 0.190353, 0.001, -0.002}},
-    {"pinhole-radtan5", {585.7561, 585.0, 320.5, 240.5, 0.1, -0.05, 0.002, -0.001, 0.08}},
-    {"pinhole-radtan5", {585.7561, 585.0, 320.5, 240.5, -0.2, 0.05, 0.0, 0.0, -0.05}}};
-
-CameraModel Make(const Case& c) {
-  return {c.name, Eigen::Map<const VectorXd>(c.parameters.data(),
-                                             static_cast<Eigen::Index>(c.parameters.size()))};
-}
-
-// A grid of pixels with their rays at several distances.
-std::vector<Vector3d> PointsInView(const CameraModel& model) {
-  std::vector<Vector3d> points;
-  for (double u = 10.0; u < 640.0; u += 62.0) {
-    for (double v = 10.0; v < 480.0; v += 46.0) {
-      const auto ray = model.Unproject({u, v});
-      if (!ray) continue;
-      for (const double depth : {0.3, 1.0, 20.0}) points.push_back(depth * *ray);
-    }
-  }
-  return points;
-}
-
-TEST(CameraModel, ProjectsByHand) {
-  // x = 0.1, y = -0.2, s = 0.05: c = 1 + 0.1 * 0.05 = 1.005, plus p1 = 0.01, p2 = 0.02:
-  // dx = 2 * 0.01 * (-0.02) + 0.02 * (0.05 + 0.02) = 0.001, dy = 0.01 * (0.05 + 0.08) + 2 * 0.02 *
-  // (-0.02) = 0.0005.
-  VectorXd parameters(8);
-  parameters << 100.0, 200.0, 50.0, 60.0, 0.1, 0.0, 0.01, 0.02;
-  const auto pixel = CameraModel("pinhole-radtan", parameters).Project({0.2, -0.4, 2.0});
-  ASSERT_TRUE(pixel);
-  EXPECT_NEAR(pixel->x(), 100.0 * (0.1005 + 0.001) + 50.0, 1e-12);
-  EXPECT_NEAR(pixel->y(), 200.0 * (-0.201 + 0.0005) + 60.0, 1e-12);
-}
-
-TEST(CameraModel, AddsTheThirdRadialTerm) {
-  VectorXd parameters(9);
-  parameters << 100.0, 100.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.5;
-  // s = 0.25: c = 1 + 0.5 * 0.25^3.
-  EXPECT_NEAR(CameraModel("pinhole-radtan5", parameters).Project({0.5, 0.0, 1.0})->x(),
-              100.0 * 0.5 * (1.0 + 0.5 * 0.015625), 1e-12);
-}
+using testing::HasSubstr;
 
 TEST(CameraModel, JacobiansAgreeWithDifferences) {
-  for (const Case& c : kCases) {
-    const CameraModel model = Make(c);
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
     std::visit(
-        [&](const auto& lens) {
-          using Lens = std::decay_t<decltype(lens)>;
+        [&](const auto& concrete) {
+          using Concrete = std::decay_t<decltype(concrete)>;
           for (const Vector3d& p : PointsInView(model)) {
             Vector2d pixel;
-            typename Lens::JacobianPoint J_point;
-            typename Lens::JacobianParameters J_parameters;
-            ASSERT_TRUE(lens.Project(p, &pixel, &J_point, &J_parameters));
+            typename Concrete::JacobianPoint J_point;
+            typename Concrete::JacobianParameters J_parameters;
+            ASSERT_TRUE(concrete.Project(p, &pixel, &J_point, &J_parameters));
             ExpectJacobian(
-                [&](const VectorXd& x) -> VectorXd { return *model.Project(Vector3d(x)); }, p,
-                J_point, 1e-6, 1e-3 * p.z());
+                [&](const VectorXd& x) -> VectorXd { return model.Project(Vector3d(x)).value(); },
+                p, J_point, 1e-6, 1e-3 * p.norm());
             ExpectJacobian(
-                [&](const VectorXd& x) -> VectorXd { return *CameraModel(c.name, x).Project(p); },
-                model.parameters(), J_parameters, 1e-6);
+                [&](const VectorXd& x) -> VectorXd {
+                  return CameraModel(lens.model, x).Project(p).value();
+                },
+                model.parameters(), J_parameters, 1e-6, 3e-6);
           }
         },
         model.variant());
@@ -92,14 +46,14 @@ TEST(CameraModel, JacobiansAgreeWithDifferences) {
 
 TEST(CameraModel, ProjectionDependsOnTheDirectionAlone) {
   // Homogeneous of degree zero: J p = 0 (Euler).
-  for (const Case& c : kCases) {
-    const CameraModel model = Make(c);
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
     std::visit(
-        [&](const auto& lens) {
+        [&](const auto& concrete) {
           for (const Vector3d& p : PointsInView(model)) {
             Vector2d pixel;
-            typename std::decay_t<decltype(lens)>::JacobianPoint J;
-            ASSERT_TRUE(lens.Project(p, &pixel, &J, nullptr));
+            typename std::decay_t<decltype(concrete)>::JacobianPoint J;
+            ASSERT_TRUE(concrete.Project(p, &pixel, &J, nullptr));
             EXPECT_LT((J * p).norm(), 1e-9);
           }
         },
@@ -108,73 +62,127 @@ TEST(CameraModel, ProjectionDependsOnTheDirectionAlone) {
 }
 
 TEST(CameraModel, UnprojectionInvertsProjection) {
-  for (const Case& c : kCases) {
-    const CameraModel model = Make(c);
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
     const std::vector<Vector3d> points = PointsInView(model);
-    ASSERT_GT(points.size(), 200U) << c.name;
+    ASSERT_GT(points.size(), 200U) << lens.model;
     for (const Vector3d& p : points) {
-      const auto pixel = model.Project(p);
-      ASSERT_TRUE(pixel);
-      const auto ray = model.Unproject(*pixel);
-      ASSERT_TRUE(ray);
-      EXPECT_LT((*ray / ray->z() - p / p.z()).norm(), 1e-9) << c.name;
+      const auto ray = model.Unproject(*model.Project(p));
+      ASSERT_TRUE(ray) << lens.model << " " << p.transpose();
+      EXPECT_LT((ray->normalized() - p.normalized()).norm(), 1e-9) << lens.model;
     }
   }
 }
 
-TEST(CameraModel, RefusesPointsBehindTheCamera) {
-  for (const Case& c : kCases) {
-    EXPECT_FALSE(Make(c).Project({0.1, 0.1, -1.0}));
-    EXPECT_FALSE(Make(c).Project({0.1, 0.1, 0.0}));
-    EXPECT_FALSE(Make(c).Project({0.1, 0.1, std::nan("")}));
+TEST(CameraModel, ProjectionInvertsUnprojectionOverTheImage) {
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
+    int num_rays = 0;
+    for (double u = 0.0; u < 640.0; u += 21.3) {
+      for (double v = 0.0; v < 480.0; v += 15.9) {
+        const auto ray = model.Unproject({u, v});
+        if (!ray) continue;
+        ++num_rays;
+        const auto pixel = model.Project(*ray);
+        ASSERT_TRUE(pixel) << lens.model << " " << u << " " << v;
+        EXPECT_LT((*pixel - Vector2d(u, v)).norm(), 1e-8) << lens.model;
+      }
+    }
+    EXPECT_GT(num_rays, 600) << lens.model;
   }
 }
 
-TEST(CameraModel, RefusesPointsBeyondTheTurningRadius) {
-  // r (1 + k1 r^2) with k1 = -1/3 grows up to r = 1 exactly.
-  VectorXd parameters(8);
-  parameters << 100.0, 100.0, 0.0, 0.0, -1.0 / 3.0, 0.0, 0.0, 0.0;
-  const CameraModel model("pinhole-radtan", parameters);
-  EXPECT_TRUE(model.Project({0.999, 0.0, 1.0}));
-  EXPECT_FALSE(model.Project({1.001, 0.0, 1.0}));
-  // The largest image radius is 100 * (1 - 1/3).
-  EXPECT_TRUE(model.Unproject({66.6, 0.0}));
-  EXPECT_FALSE(model.Unproject({66.7, 0.0}));
+TEST(CameraModel, EveryModelIsTested) {
+  std::set<std::string_view> tested;
+  for (const Lens& lens : Lenses()) tested.insert(lens.model);
+  EXPECT_EQ(tested, std::set<std::string_view>(kCameraModelNames.begin(), kCameraModelNames.end()));
 }
 
-TEST(CameraModel, TurningRadiusOfTheCubicIsItsFirstRoot) {
-  // 1 + 3 k1 s + 5 k2 s^2 + 7 k3 s^3 = (1 - s/0.5) (1 - s/2) (1 - s/3)
-  //   = 1 - (2 + 1/2 + 1/3) s + (1 + 2/3 + 1/6) s^2 - 1/3 s^3.
-  VectorXd parameters(9);
-  parameters << 100.0, 100.0, 0.0, 0.0, -(17.0 / 6.0) / 3.0, (11.0 / 6.0) / 5.0, 0.0, 0.0,
-      -(1.0 / 3.0) / 7.0;
-  const CameraModel model("pinhole-radtan5", parameters);
-  EXPECT_TRUE(model.Project({std::sqrt(0.4999), 0.0, 1.0}));
-  EXPECT_FALSE(model.Project({std::sqrt(0.5001), 0.0, 1.0}));
+TEST(CameraModel, RefusesWhatIsNoPoint) {
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
+    EXPECT_FALSE(model.Project({0.1, 0.1, std::nan("")})) << lens.model;
+    EXPECT_FALSE(model.Project({std::nan(""), 0.1, 1.0})) << lens.model;
+    EXPECT_FALSE(model.Project({0.0, 0.0, 0.0})) << lens.model;
+    EXPECT_FALSE(model.Project({0.0, 0.0, -1.0})) << lens.model;
+    EXPECT_FALSE(model.Unproject({std::nan(""), 100.0})) << lens.model;
+  }
 }
 
 TEST(CameraModel, CoversImageTellsLensesThatCanExist) {
-  EXPECT_TRUE(CoversImage(Make(kCases[0]), {640, 480}));
-  EXPECT_TRUE(CoversImage(Make(kCases[1]), {752, 480}));
-  VectorXd parameters(8);
-  parameters << 300.0, 300.0, 320.0, 240.0, -0.4, 0.0, 0.0, 0.0;
-  EXPECT_FALSE(CoversImage(CameraModel("pinhole-radtan", parameters), {640, 480}));
+  const auto covers = [](const Lens& lens) { return CoversImage(Make(lens), {640, 480}); };
+  EXPECT_TRUE(covers(Lenses()[0]));
+  EXPECT_TRUE(covers(Lenses()[1]));
+  EXPECT_FALSE(covers({"pinhole-radtan", {300.0, 300.0, 320.0, 240.0, -0.4, 0.0, 0.0, 0.0}}));
+  // Dark corners: the image radius ends at 314 px (theta = pi), at 224 px and at 101 px; the lens
+  // sees more than 90 degrees off its axis.
+  EXPECT_TRUE(covers({"pinhole-equi", {100.0, 100.0, 320.0, 240.0, 0.0, 0.0, 0.0, 0.0}}));
+  EXPECT_TRUE(covers({"ds-none", {0.0, 0.6, 100.0, 100.0, 320.0, 240.0}}));
+  EXPECT_TRUE(covers({"omni-none", {1.4, 100.0, 100.0, 320.0, 240.0}}));
+  // Turns back at 57 degrees; sees less than 90 degrees off its axis.
+  EXPECT_FALSE(covers({"pinhole-equi", {100.0, 100.0, 320.0, 240.0, -1.0 / 3.0, 0.0, 0.0, 0.0}}));
+  EXPECT_FALSE(covers({"eucm-none", {1.3, 1.0, 100.0, 100.0, 320.0, 240.0}}));
+  EXPECT_FALSE(covers({"pinhole-fov", {100.0, 100.0, 320.0, 240.0, 1.0}}));
 }
 
-TEST(CameraModel, NamesItsParametersInOrder) {
-  EXPECT_EQ(CameraModel::ParameterNames("pinhole-radtan5"),
-            (std::vector<std::string>{"fu", "fv", "pu", "pv", "k1", "k2", "p1", "p2", "k3"}));
-  EXPECT_EQ(CameraModel::NumParameters("pinhole-none"), 4);
+TEST(CameraModel, NamesItsParametersInKalibrsOrder) {
+  const auto names = [](std::string_view model) {
+    std::string joined;
+    for (const std::string& name : CameraModel::ParameterNames(model)) joined += name + " ";
+    return joined;
+  };
+  EXPECT_EQ(names("pinhole-none"), "fu fv pu pv ");
+  EXPECT_EQ(names("pinhole-radtan"), "fu fv pu pv k1 k2 p1 p2 ");
+  EXPECT_EQ(names("pinhole-radtan5"), "fu fv pu pv k1 k2 p1 p2 k3 ");
+  EXPECT_EQ(names("pinhole-equi"), "fu fv pu pv k1 k2 k3 k4 ");
+  EXPECT_EQ(names("pinhole-fov"), "fu fv pu pv w ");
+  EXPECT_EQ(names("omni-none"), "xi fu fv pu pv ");
+  EXPECT_EQ(names("omni-radtan"), "xi fu fv pu pv k1 k2 p1 p2 ");
+  EXPECT_EQ(names("ds-none"), "xi alpha fu fv pu pv ");
+  EXPECT_EQ(names("eucm-none"), "alpha beta fu fv pu pv ");
+}
+
+TEST(CameraModel, TellsIntrinsicsFromDistortion) {
+  for (const Lens& lens : Lenses()) {
+    const CameraModel model = Make(lens);
+    const int focal_index = CameraModel::FocalIndex(lens.model);
+    EXPECT_EQ(CameraModel::ParameterNames(lens.model)[static_cast<size_t>(focal_index)], "fu");
+    EXPECT_EQ(model.focal_and_centre(), model.parameters().segment<4>(focal_index));
+    VectorXd whole(model.num_parameters());
+    whole << model.intrinsics(), model.distortion();
+    EXPECT_EQ(whole, model.parameters());
+    EXPECT_EQ(model.intrinsics().size(), CameraModel::NumIntrinsics(lens.model));
+    EXPECT_EQ(model.num_parameters(), CameraModel::NumParameters(lens.model));
+    EXPECT_LE(model.num_parameters(), kMaxCameraParameters);
+    EXPECT_EQ(model.name(), lens.model);
+  }
+}
+
+std::string ErrorOf(const Lens& lens) {
+  try {
+    (void)Make(lens);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
 }
 
 TEST(CameraModel, RefusesWhatIsNoCamera) {
-  EXPECT_THROW(CameraModel("pinhole-radtann", VectorXd::Ones(8)), InputError);
-  EXPECT_THROW(CameraModel("pinhole-radtan", VectorXd::Ones(7)), InputError);
-  VectorXd negative = VectorXd::Ones(4);
-  negative(1) = -1.0;
-  EXPECT_THROW(CameraModel("pinhole-none", negative), InputError);
-  negative(1) = std::nan("");
-  EXPECT_THROW(CameraModel("pinhole-none", negative), InputError);
+  EXPECT_THAT(ErrorOf({"pinhole-radtann", {1.0, 1.0, 1.0, 1.0}}), HasSubstr("pinhole-radtan,"));
+  EXPECT_THAT(ErrorOf({"pinhole-radtan", std::vector<double>(7, 1.0)}),
+              HasSubstr("expected 8, got 7"));
+  EXPECT_THAT(ErrorOf({"pinhole-none", {1.0, -1.0, 1.0, 1.0}}), HasSubstr("focal lengths"));
+  EXPECT_THAT(ErrorOf({"omni-none", {0.0, 0.0, 1.0, 1.0, 1.0}}), HasSubstr("focal lengths"));
+  EXPECT_THAT(ErrorOf({"pinhole-none", {1.0, std::nan(""), 1.0, 1.0}}), HasSubstr("finite"));
+  EXPECT_THAT(ErrorOf({"pinhole-none", {1.0, 1.0, std::nan(""), 1.0}}), HasSubstr("finite"));
+}
+
+TEST(CameraModel, RefusesParametersOutsideTheModelsRange) {
+  EXPECT_THAT(ErrorOf({"omni-none", {-1.0, 1.0, 1.0, 1.0, 1.0}}), HasSubstr("xi must be above"));
+  EXPECT_THAT(ErrorOf({"ds-none", {-1.0, 0.5, 1.0, 1.0, 1.0, 1.0}}), HasSubstr("xi must be above"));
+  EXPECT_THAT(ErrorOf({"eucm-none", {0.5, 0.0, 1.0, 1.0, 1.0, 1.0}}), HasSubstr("beta must be"));
+  EXPECT_THAT(ErrorOf({"pinhole-fov", {1.0, 1.0, 1.0, 1.0, -0.1}}), HasSubstr("w must lie in"));
+  EXPECT_THAT(ErrorOf({"pinhole-fov", {1.0, 1.0, 1.0, 1.0, 3.15}}), HasSubstr("w must lie in"));
 }
 
 }  // namespace

@@ -1,32 +1,43 @@
 #include "calibrato/sensors/imu.h"
 
-namespace calibrato {
+#include <Eigen/Geometry>
 
-ImuNoise ImuNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
-  if (warnings != nullptr) {
-    const std::vector<std::string> unknown = value.UnknownKeys(
-        {"rostopic", "update_rate", "accelerometer_noise_density", "accelerometer_random_walk",
-         "gyroscope_noise_density", "gyroscope_random_walk", "T_cam_imu", "time_offset_s"});
-    warnings->insert(warnings->end(), unknown.begin(), unknown.end());
-  }
-  ImuNoise noise;
-  noise.rate_hz = value.At("update_rate").AsPositive();
-  noise.accel_noise_density = value.At("accelerometer_noise_density").AsPositive();
-  noise.accel_random_walk = value.At("accelerometer_random_walk").AsPositive();
-  noise.gyro_noise_density = value.At("gyroscope_noise_density").AsPositive();
-  noise.gyro_random_walk = value.At("gyroscope_random_walk").AsPositive();
-  return noise;
+namespace calibrato {
+namespace {
+
+// What is added to the acceleration at an arm r from the origin, in frame i.
+Eigen::Vector3d LeverAcceleration(const ImuMotion& motion, const Eigen::Vector3d& r_i) {
+  return motion.alpha_i.cross(r_i) + motion.omega_i.cross(motion.omega_i.cross(r_i));
 }
 
-Value ToValue(const ImuNoise& noise) {
-  Value value = Value::Object();
-  value.Set("rostopic", "/imu0")
-      .Set("update_rate", noise.rate_hz)
-      .Set("accelerometer_noise_density", noise.accel_noise_density)
-      .Set("accelerometer_random_walk", noise.accel_random_walk)
-      .Set("gyroscope_noise_density", noise.gyro_noise_density)
-      .Set("gyroscope_random_walk", noise.gyro_random_walk);
-  return value;
+}  // namespace
+
+ImuMotion MotionOfFrame(const ImuMotion& motion_i, const Rigid3& T_i_j) {
+  return {
+      .R_w_i = motion_i.R_w_i * T_i_j.R,
+      .omega_i = T_i_j.R.transpose() * motion_i.omega_i,
+      .alpha_i = T_i_j.R.transpose() * motion_i.alpha_i,
+      .accel_w = motion_i.accel_w + motion_i.R_w_i * LeverAcceleration(motion_i, T_i_j.t),
+  };
+}
+
+Eigen::Vector3d SpecificForce(const ImuMotion& motion, const Eigen::Vector3d& gravity_w) {
+  return motion.R_w_i.transpose() * (motion.accel_w - gravity_w);
+}
+
+Eigen::Vector3d PredictGyro(const ImuMotion& motion, const Eigen::Vector3d& gravity_w,
+                            const ImuIntrinsics& intrinsics, const Eigen::Vector3d& bias) {
+  return intrinsics.M_gyro * (intrinsics.R_gyro_i * motion.omega_i) +
+         intrinsics.g_sensitivity * (intrinsics.R_gyro_i * SpecificForce(motion, gravity_w)) + bias;
+}
+
+Eigen::Vector3d PredictAccel(const ImuMotion& motion, const Eigen::Vector3d& gravity_w,
+                             const ImuIntrinsics& intrinsics, const Eigen::Vector3d& bias) {
+  Eigen::Vector3d force_i = SpecificForce(motion, gravity_w);
+  for (int k = 0; k < 3; ++k) {
+    force_i(k) += LeverAcceleration(motion, intrinsics.lever_arms_i.col(k))(k);
+  }
+  return intrinsics.M_accel * force_i + bias;
 }
 
 }  // namespace calibrato

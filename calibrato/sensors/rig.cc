@@ -1,5 +1,7 @@
 #include "calibrato/sensors/rig.h"
 
+#include "calibrato/sensors/imu_file.h"
+
 namespace calibrato {
 namespace {
 
@@ -27,7 +29,15 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   rig.cameras = CameraChainFromValue(value.At("cameras"), warnings);
   rig.T_e_c0 = Rigid3FromValue(value.At("T_e_c0"));
   const Value& imu = value.At("imu");
-  rig.imu_noise = ImuNoiseFromValue(imu, warnings);
+  if (warnings != nullptr) {
+    const std::vector<std::string> unknown = imu.UnknownKeys(
+        {"rostopic", "update_rate", "accelerometer_noise_density", "accelerometer_random_walk",
+         "gyroscope_noise_density", "gyroscope_random_walk", "accelerometers", "gyroscopes",
+         "T_cam_imu", "time_offset_s", "disturbances"});
+    warnings->insert(warnings->end(), unknown.begin(), unknown.end());
+  }
+  rig.imu_noise = ImuNoiseFromValue(imu);
+  rig.imu_disturbances = ImuDisturbancesFromValue(imu, warnings);
   rig.T_c0_i = Rigid3FromValue(imu.At("T_cam_imu"));
   if (const Value* offset = imu.Find("time_offset_s")) {
     const double seconds = offset->AsDouble();
@@ -48,6 +58,7 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
 Value ToValue(const Rig& rig) {
   Value imu = ToValue(rig.imu_noise);
   imu.Set("T_cam_imu", ToValue(rig.T_c0_i)).Set("time_offset_s", rig.time_offset_i_c.seconds());
+  SetImuDisturbances(rig.imu_disturbances, &imu);
   Value board = ToValue(rig.board);
   board.Set("T_w_g", ToValue(rig.T_w_g));
   Value noise = Value::Object();

@@ -9,6 +9,7 @@
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/camera_chain.h"
 #include "calibrato/sensors/imu.h"
+#include "calibrato/sensors/imu_disturbances.h"
 
 namespace calibrato {
 
@@ -35,6 +36,7 @@ struct Rig {
   Rigid3 T_c0_i;             ///< IMU to camera 0: Kalibr's T_cam_imu.
   Duration time_offset_i_c;  ///< t_i = t_c + time_offset_i_c
   ImuNoise imu_noise;
+  ImuDisturbances imu_disturbances;
   Board board;
   Rigid3 T_w_g;             ///< Where the board stands.
   double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace calibrato {
 namespace {
@@ -39,16 +41,12 @@ std::optional<double> BlurLength(const Rig& rig, const TimedMotion& motion, doub
   return sum / static_cast<double>(points_g.cols());
 }
 
-// Mean distance of consecutive corners along the board's columns [px].
-double CornerSpacing(const Eigen::Matrix2Xd& pixels, int columns) {
+// Mean distance of neighbouring corners [px].
+double CornerSpacing(const Eigen::Matrix2Xd& pixels,
+                     const std::vector<std::pair<int, int>>& neighbours) {
   double sum = 0.0;
-  int count = 0;
-  for (Eigen::Index k = 1; k < pixels.cols(); ++k) {
-    if (k % columns == 0) continue;
-    sum += (pixels.col(k) - pixels.col(k - 1)).norm();
-    ++count;
-  }
-  return sum / count;
+  for (const auto& [a, b] : neighbours) sum += (pixels.col(b) - pixels.col(a)).norm();
+  return sum / static_cast<double>(neighbours.size());
 }
 
 }  // namespace
@@ -60,7 +58,7 @@ Rigid3 BoardInCamera(const Rig& rig, const Rigid3& T_b_e) {
 SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time start, Rng& rng) {
   const Camera& camera = rig.cameras.front();
   const Eigen::Matrix3Xd points_g = BoardPoints(rig.board);
-  const int columns = std::get<Checkerboard>(rig.board).columns;
+  const std::vector<std::pair<int, int>> neighbours = NeighbouringPoints(rig.board);
   const CornerNoise& noise = rig.corner_noise;
   const Duration period = Duration::FromSeconds(1.0 / kCameraRateHz);
   const Duration end = Duration::FromSeconds(motion.duration_s());
@@ -77,7 +75,7 @@ SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time s
       continue;
     }
     // Drawn for every frame alike, so that one frame's fate does not change the next one's noise.
-    const double smear = *blur / CornerSpacing(*pixels, columns);
+    const double smear = *blur / CornerSpacing(*pixels, neighbours);
     const double detected = 1.0 / (1.0 + std::exp((smear - noise.blur_at_half) / noise.blur_slope));
     const bool found = rng.Uniform() < detected || rig.exposure_s == 0.0;
     const double stddev = std::hypot(noise.stddev_px, noise.blur_factor * *blur);

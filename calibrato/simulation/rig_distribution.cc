@@ -40,7 +40,7 @@ Rig DrawRig(RigDistribution distribution, Rng& rng) {
   const double f = FocalLengthFromFieldOfView(rng.Normal(kFieldOfViewMean, kFieldOfViewStddev),
                                               camera.resolution.width);
   Eigen::VectorXd parameters = Eigen::VectorXd::Zero(9);
-  parameters.head<4>() << f, f, camera.model.intrinsics().tail<2>();
+  parameters.head<4>() << f, f, camera.model.focal_and_centre().tail<2>();
   camera.model = CameraModel("pinhole-radtan5", parameters);
   if (distribution == RigDistribution::kPaper) {
     do {
@@ -56,6 +56,8 @@ Rig DrawRig(RigDistribution distribution, Rng& rng) {
   return rig;
 }
 
-Eigen::Vector4d PriorMeanIntrinsics() { return PaperRig().cameras.front().model.intrinsics(); }
+Eigen::Vector4d PriorMeanIntrinsics() {
+  return PaperRig().cameras.front().model.focal_and_centre();
+}
 
 }  // namespace calibrato

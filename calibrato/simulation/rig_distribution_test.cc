@@ -18,7 +18,7 @@ TEST(DrawRig, FollowsTable4) {
   for (int i = 0; i < kNumRigs; ++i) {
     const Rig rig = DrawRig(RigDistribution::kPaperUndistorted, rng);
     Eigen::Matrix<double, 7, 1> x;
-    x << 2.0 * std::atan(320.0 / rig.cameras[0].model.intrinsics()(0)), rig.T_c0_i.t,
+    x << 2.0 * std::atan(320.0 / rig.cameras[0].model.focal_and_centre()(0)), rig.T_c0_i.t,
         RpyFromRotation(rig.T_c0_i.R);
     sum += x;
     sum_of_squares += x.cwiseAbs2();

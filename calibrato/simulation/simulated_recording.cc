@@ -5,6 +5,8 @@
 
 #include "calibrato/base/value.h"
 #include "calibrato/recording/corner_list.h"
+#include "calibrato/recording/imu_list.h"
+#include "calibrato/sensors/imu_file.h"
 
 namespace calibrato {
 namespace {
@@ -19,12 +21,18 @@ std::string SensorYaml(const Camera& camera) {
   return ToYaml(sensor);
 }
 
-std::string TruthYaml(const Rig& rig) {
+std::string TruthYaml(const Rig& rig, const SimulatedImu& imu) {
   Value truth = ToValue(rig.cameras);
   Value camera = truth.At("cam0");
   camera.Set("T_cam_imu", ToValue(rig.T_c0_i))
       .Set("timeshift_cam_imu", rig.time_offset_i_c.seconds());
   truth.Set("cam0", std::move(camera));
+  Value biases = Value::Object();
+  biases.Set("gyro_bias", Value::Numbers(imu.mean_gyro_bias))
+      .Set("accel_bias", Value::Numbers(imu.mean_accel_bias));
+  Value imus = Value::Object();
+  imus.Set("imu0", std::move(biases));
+  truth.Set("biases", std::move(imus));
   const Eigen::Vector3d gravity_g =
       rig.T_w_g.R.transpose() * Eigen::Vector3d(0.0, 0.0, -kStandardGravity);
   truth.Set("gravity_g", Value::Numbers(gravity_g));
@@ -34,12 +42,15 @@ std::string TruthYaml(const Rig& rig) {
 std::string TruthPoses(const Rig& rig, const TimedMotion& motion, Time start) {
   std::string text = "timestamp [ns],x,y,z,qw,qx,qy,qz\n";
   const Time start_imu = start + rig.time_offset_i_c;
-  const auto num_poses = static_cast<int>(std::floor(motion.duration_s() * kTruthRateHz)) + 1;
+  // In the time that the IMU's clock shows.
+  const double ticks_per_s = 1.0 + 1e-6 * rig.imu_disturbances.clock_drift_ppm;
+  const auto num_poses =
+      static_cast<int>(std::floor(motion.duration_s() * ticks_per_s * kTruthRateHz)) + 1;
   const Duration period = Duration::FromSeconds(1.0 / kTruthRateHz);
   for (int k = 0; k < num_poses; ++k) {
     const Duration elapsed = period * k;
     const Rigid3 T_g_i =
-        BoardInCamera(rig, motion.At(elapsed.seconds()).T_b_e).Inverse() * rig.T_c0_i;
+        BoardInCamera(rig, motion.At(elapsed.seconds() / ticks_per_s).T_b_e).Inverse() * rig.T_c0_i;
     const Eigen::Quaterniond q(T_g_i.R);
     text += std::to_string((start_imu + elapsed).nanoseconds());
     for (const double x : {T_g_i.t.x(), T_g_i.t.y(), T_g_i.t.z(), q.w(), q.x(), q.y(), q.z()}) {
@@ -71,13 +82,16 @@ std::string TimedMotionYaml(const TimedMotion& timed) {
 
 std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
                                                            const TimedMotion& motion, Time start,
-                                                           const SimulatedFrames& frames) {
-  return {{"cam0_corners.csv", CornerListText(frames.views)},
+                                                           const SimulatedFrames& frames,
+                                                           const SimulatedImu& imu) {
+  return {{"cam0_corners.csv", CornerListText(frames.views, PointsPerTag(rig.board))},
+          {"imu0.csv", ImuListText(imu.stream)},
+          {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
           {"sensor.yaml", SensorYaml(rig.cameras.front())},
           {"target.yaml", ToYaml(ToValue(rig.board))},
           {"rig.yaml", ToYaml(ToValue(rig))},
           {"motion.yaml", TimedMotionYaml(motion)},
-          {"truth.yaml", TruthYaml(rig)},
+          {"truth.yaml", TruthYaml(rig, imu)},
           {"truth_poses.csv", TruthPoses(rig, motion, start)}};
 }
 

@@ -10,6 +10,7 @@
 #include "calibrato/base/files.h"
 #include "calibrato/motion/paper_scene.h"
 #include "calibrato/recording/recording.h"
+#include "calibrato/sensors/imu_file.h"
 
 namespace calibrato {
 namespace {
@@ -19,12 +20,15 @@ struct Simulated {
   TimedMotion motion = std::get<TimedMotion>(PlanMotion(HandcraftedMotion(Task::kExtrinsic), rig));
   Time start = Time::FromNanoseconds(1'600'000'000'000'000'000);
   SimulatedFrames frames;
+  SimulatedImu imu;
   std::map<std::string, std::string> files;
   Simulated() {
     rig.time_offset_i_c = Duration::FromNanoseconds(7'300'000);
     Rng rng(1);
     frames = SimulateFrames(rig, motion, start, rng);
-    files = SimulatedRecordingFiles(rig, motion, start, frames);
+    Rng imu_rng(2);
+    imu = SimulateImu(rig, motion, start, imu_rng);
+    files = SimulatedRecordingFiles(rig, motion, start, frames, imu);
   }
 };
 
@@ -43,7 +47,26 @@ TEST(SimulatedRecording, OpensLikeAnyOther) {
   EXPECT_EQ(views[11].stamp, simulated.frames.views[11].stamp);
   EXPECT_EQ(views[11].pixels, simulated.frames.views[11].pixels);
   EXPECT_EQ(views[11].points_g, simulated.frames.views[11].points_g);
+  ASSERT_EQ(recording.imus.size(), 1U);
+  EXPECT_EQ(recording.imus[0].name, "imu0");
+  const ImuStream& stream = recording.imus[0].stream;
+  ASSERT_EQ(stream.gyro.size(), simulated.imu.stream.gyro.size());
+  EXPECT_EQ(stream.gyro[345].stamp, simulated.imu.stream.gyro[345].stamp);
+  EXPECT_EQ(stream.gyro[345].value, simulated.imu.stream.gyro[345].value);
+  EXPECT_EQ(stream.accel[345].value, simulated.imu.stream.accel[345].value);
   std::filesystem::remove_all(folder);
+}
+
+TEST(SimulatedRecording, TellsTheBiasesAndTheNoise) {
+  const Simulated simulated;
+  const Value truth = ParseYaml(simulated.files.at("truth.yaml"), "truth.yaml");
+  const Value& biases = truth.At("biases").At("imu0");
+  EXPECT_EQ(biases.At("gyro_bias").AsDoubles(3)[1], simulated.imu.mean_gyro_bias(1));
+  EXPECT_EQ(biases.At("accel_bias").AsDoubles(3)[2], simulated.imu.mean_accel_bias(2));
+  EXPECT_EQ(truth.At("cam0").At("timeshift_cam_imu").AsDouble(), 0.0073);
+  const std::vector<Imu> imus =
+      ImusFromValue(ParseYaml(simulated.files.at("imu.yaml"), "imu.yaml"), nullptr);
+  EXPECT_EQ(imus.at(0).noise.gyro_noise_density, simulated.rig.imu_noise.gyro_noise_density);
 }
 
 TEST(SimulatedRecording, RigAndMotionReadBack) {

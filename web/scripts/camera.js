@@ -1,4 +1,5 @@
-// A camera calibration: may it be believed, what are the numbers, and what do they rest on.
+// A camera calibration: may it be believed, what are the numbers, and what do they rest on. What it
+// is given: calibrato/report/report.h.
 
 const kVerdictLines = {
   pass: "This calibration can be trusted.",
@@ -148,6 +149,49 @@ function correlationCard(covariance) {
               plot(build, {height: kNarrow ? "360px" : "420px"}));
 }
 
+/** How often chance alone would make it as large; below 0.27 %, three sigmas, it is more. */
+function chanceText(probability) {
+  if (!isNumber(probability)) return "not tested";
+  if (probability < 0.0027) return "no: it is more";
+  return `in ${number(100 * probability, 2)} % of cases`;
+}
+
+function pixels(value) {
+  return `${number(value, 3)} px`;
+}
+
+/** What the data say of themselves: halves against each other, views held out, board's shape. */
+function checksCard(camera, title) {
+  const rows = [];
+  const {split, residual_field: field, bending, stretch} = camera.checks ?? {};
+  if (split) {
+    rows.push(["difference of the two halves", "", chanceText(split.probability)],
+              ["noise of the views that were fitted", pixels(split.in_sample_stddev_px)],
+              ["noise of views held out", pixels(split.held_out_stddev_px)],
+              ["noise to be expected of those", pixels(split.expected_held_out_stddev_px)]);
+  }
+  if (field) {
+    rows.push(["residuals that depend on the place", pixels(field.systematic_rms_px),
+               chanceText(field.probability)]);
+  }
+  if (bending) {
+    rows.push(["bending of the board", `${number(1000 * bending.depth_m, 2)} mm`,
+               chanceText(bending.probability)]);
+  }
+  if (stretch) {
+    rows.push(["board longer along y than stated", `${number(100 * stretch.stretch, 2)} %`,
+               chanceText(stretch.probability)]);
+  }
+  const note = "Each half of the views calibrates alone; then each predicts the other's corners.";
+  if (rows.length === 0) return card(title, note, emptyNote("Nothing was cross-checked."));
+  return card(title, note, table(["what", "how much", "by chance"],
+                                 rows.map(([what, value, chance]) => [what, value, chance ?? ""])));
+}
+
+function cameraTitle(title, index, cameras) {
+  return cameras.length > 1 ? `${title} of camera ${index}` : title;
+}
+
 function cameraSection(result) {
   const cameras = list(result.cameras);
   const made = element("div", {class: "cards"});
@@ -155,19 +199,30 @@ function cameraSection(result) {
     made.append(wide(card("Parameters", "", emptyNote("No camera was calibrated."))));
   }
   for (const [index, camera] of cameras.entries()) {
-    const title = cameras.length > 1 ? `Parameters of camera ${index}` : "Parameters";
-    const parameters = card(title, "", cameraFacts(camera), parameterTable(camera));
+    const parameters = card(cameraTitle("Parameters", index, cameras), "", cameraFacts(camera),
+                            parameterTable(camera));
     parameters.classList.add("tall");
     made.append(parameters);
   }
-  made.append(coverageCard(result.coverage), informationCard(result.information));
-  if (result.plots) {
-    made.append(...viewCards(result.plots, cameras[0] ?? {}));
-  } else {
-    made.append(wide(card("Views", "", emptyNote("The views were not handed over for drawing."))));
+  for (const [index, camera] of cameras.entries()) {
+    made.append(checksCard(camera, cameraTitle("Cross-checks", index, cameras)));
   }
-  made.append(correlationCard(result.covariance));
-  const without = list(result.plots?.images_without_board);
-  if (without.length > 0) made.append(withoutBoardCard(without));
-  return [made];
+  if (cameras.length > 1) made.append(...rigCards(result));
+  const correlation = correlationCard(result.covariance);
+  made.append(coverageCard(result.coverage), informationCard(result.information),
+              cameras.length > 1 ? wide(correlation) : correlation);
+  const parts = [made];
+  for (const [index, camera] of cameras.entries()) {
+    const plots = result[index === 0 ? "plots" : `plots_cam${index}`];
+    const cards = element("div", {class: "cards"});
+    if (cameras.length > 1) parts.push(element("h3", {class: "part"}, `Camera ${index}`));
+    if (plots) {
+      cards.append(...viewCards(plots, camera));
+    } else {
+      const reason = emptyNote("The views were not handed over for drawing.");
+      cards.append(wide(card("Views", "", reason)));
+    }
+    parts.push(cards);
+  }
+  return parts;
 }

@@ -51,12 +51,23 @@ function motionTraces(motion) {
   return traces;
 }
 
+/** A box to tick: shows and hides these traces of a plot. */
+function traceSwitch(place, label, shown, traces) {
+  const box = element("input", {type: "checkbox"});
+  box.checked = shown;
+  box.addEventListener("change", () => {
+    if (traces().length > 0) Plotly.restyle(place, {visible: box.checked}, traces());
+  });
+  return element("label", {}, box, ...label);
+}
+
 function motionCard(motions, outline_b, title) {
   const drawn = motions.filter((motion) => loopsOf(motion).length > 0);
   const note = "Path of the camera in the arm's base frame, each loop in a shade of its own; " +
       "thin lines show where the camera looks.";
   if (drawn.length === 0) return card(title, note, emptyNote("No motion was handed over."));
 
+  const outline = list(outline_b);
   const traceIndices = new Map();
   const place = plot(() => {
     const data = [];
@@ -65,10 +76,10 @@ function motionCard(motions, outline_b, title) {
       traceIndices.set(motion, traces.map((_, i) => data.length + i));
       data.push(...traces);
     }
-    const outline = list(outline_b);
     if (outline.length > 0) {
+      traceIndices.set("board", [data.length]);
       data.push({
-        type: "scatter3d", mode: "lines", ...polylines([[...outline, outline[0]]]),
+        type: "scatter3d", mode: "lines", ...polylines([[...outline, outline[0]]]), visible: false,
         line: {width: 5, color: kBlack}, showlegend: false, hovertemplate: "board<extra></extra>",
       });
     }
@@ -76,25 +87,23 @@ function motionCard(motions, outline_b, title) {
       data,
       layout: {
         margin: {l: 0, r: 0, t: 0, b: 0},
-        scene: scene(["x [m]", "y [m]", "z [m]"], [-1.2, -1.8, 0.9]),
+        scene: scene(["x [m]", "y [m]", "z [m]"], [-1.2, -1.4, 0.8], data),
       },
     };
   }, {height: kNarrow ? "380px" : "560px"});
 
   const control = element("div", {class: "control"});
   for (const motion of drawn) {
-    const box = element("input", {type: "checkbox"});
-    box.checked = true;
-    box.addEventListener("change", () => {
-      if (traceIndices.has(motion)) {
-        Plotly.restyle(place, {visible: box.checked}, traceIndices.get(motion));
-      }
-    });
     const swatch = element("span", {class: "swatch"});
     swatch.style.background = policyColour(motion.policy);
     const length = isNumber(motion.path_length_m) ? `, ${number(motion.path_length_m, 4)} m` : "";
     const seconds = isNumber(motion.motion_s) ? `, ${number(motion.motion_s, 3)} s` : "";
-    control.append(element("label", {}, box, swatch, `${motion.policy}${length}${seconds}`));
+    control.append(traceSwitch(place, [swatch, `${motion.policy}${length}${seconds}`], true,
+                               () => traceIndices.get(motion) ?? []));
+  }
+  // The board is so much farther away than the path is long that the path would be drawn small.
+  if (outline.length > 0) {
+    control.append(traceSwitch(place, ["board"], false, () => traceIndices.get("board") ?? []));
   }
   return card(title, note, control, place);
 }

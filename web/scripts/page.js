@@ -2,6 +2,10 @@
 
 const kKinds = {
   "camera": {title: "Camera calibration", summary: cameraSummary, section: cameraSection},
+  "camera-imu": {
+    title: "Camera-IMU calibration", summary: cameraImuSummary, section: cameraImuSection,
+  },
+  "diff": {title: "Two calibrations compared", summary: diffSummary, section: diffSection},
   "learn": {title: "Learning", summary: learnSummary, section: learnSection},
   "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
 };
@@ -71,6 +75,6 @@ function writePage(documents) {
 }
 
 writePage(JSON.parse(document.getElementById("documents").textContent));
-drawPlots().then(() => {
+drawAll().then(() => {
   document.documentElement.dataset.state = "drawn";
 });

@@ -24,11 +24,18 @@ const kPolicySymbols = {
   "fine-tuned": "diamond",
 };
 
+/** The policy of which this is the motion made as short as random's, or the policy itself. */
+function withoutPath(policy) {
+  return typeof policy === "string" ? policy.replace(/ at random's path$/, "") : policy;
+}
+
 /** The same on the whole page, for policies that are not the paper's as well. */
 const policyColour = (() => {
   const others = [kVermilion, kSkyBlue, kBlack, kGrey];
   const given = new Map(Object.entries(kPolicyColours));
   return (policy) => {
+    // The same motion made shorter is the same colour made lighter.
+    if (withoutPath(policy) !== policy) return shade(policyColour(withoutPath(policy)), 0.45);
     if (!given.has(policy)) {
       given.set(policy, others[(given.size - Object.keys(kPolicyColours).length) % others.length]);
     }
@@ -37,7 +44,7 @@ const policyColour = (() => {
 })();
 
 function policySymbol(policy) {
-  return kPolicySymbols[policy] ?? "cross";
+  return kPolicySymbols[withoutPath(policy)] ?? "cross";
 }
 
 /** A colour of the form #rrggbb, mixed with white (towards 1) or black (towards -1). */
@@ -93,25 +100,41 @@ function logAxis(title) {
   return axis(title, {type: "log", tickvals: ticks, ticktext: ticks.map(String)});
 }
 
-function sceneAxis(title) {
+function sceneAxis(title, nticks) {
   return {
     title: {text: title, font: {size: 13}},
     gridcolor: "#d5dae0",
     zerolinecolor: "#aab2bb",
     backgroundcolor: "#fafbfc",
     showbackground: true,
-    nticks: 6,
+    nticks,
   };
 }
 
-/** A 3-D scene with equal scales, seen from this direction. */
-function scene(titles, direction) {
-  const distance = kNarrow ? 1.5 : 1;
+/** Sides of the box around what is shown of 3-D traces. */
+function boxSides(traces) {
+  return ["x", "y", "z"].map((name) => {
+    const values = traces.flatMap((trace) => trace.visible === false ? [] : trace[name])
+        .filter(isNumber);
+    return values.reduce((a, b) => Math.max(a, b), -Infinity) -
+        values.reduce((a, b) => Math.min(a, b), Infinity);
+  });
+}
+
+/** A 3-D scene with equal scales, seen from this direction, far enough away to see all of it. */
+function scene(titles, direction, traces) {
+  const sides = boxSides(traces);
+  const longest = Math.max(...sides);
+  // Plotly makes the box as large as a cube of side 1.
+  const cube = Math.cbrt(sides[0] * sides[1] * sides[2]);
+  const distance = (kNarrow ? 1.5 : 1) * Math.max(1, cube > 0 ? 0.85 * longest / cube : 1);
   const eye = Object.fromEntries(direction.map((x, i) => ["xyz"[i], distance * x]));
+  const axes = titles.map(
+      (title, i) => sceneAxis(title, Math.max(2, Math.round(6 * sides[i] / longest))));
   return {
-    xaxis: sceneAxis(titles[0]),
-    yaxis: sceneAxis(titles[1]),
-    zaxis: sceneAxis(titles[2]),
+    xaxis: axes[0],
+    yaxis: axes[1],
+    zaxis: axes[2],
     aspectmode: "data",
     camera: {eye, center: {x: 0, y: 0, z: -0.15}, projection: {type: "perspective"}},
   };
@@ -132,29 +155,6 @@ function completeLayout(layout) {
   };
 }
 
-/** The axes of an image: v grows downwards, and pixels are square. */
-function imageLayout(resolution) {
-  const [width, height] = resolution;
-  const outline = {
-    type: "rect", x0: -0.5, y0: -0.5, x1: width - 0.5, y1: height - 0.5,
-    line: {color: kGrey, width: 1}, layer: "below", fillcolor: "#fafbfc",
-  };
-  const margin = 0.02 * width;
-  return {
-    xaxis: axis("u [px]", {range: [-margin, width + margin], constrain: "domain", zeroline: false}),
-    yaxis: axis("v [px]", {
-      range: [height + margin, -margin], scaleanchor: "x", constrain: "domain", zeroline: false,
-    }),
-    shapes: [outline],
-  };
-}
-
-/** Of a plot that holds such an image and its axes, and perhaps a bar of colours above it. */
-function imageAspect(resolution, hasColourBar) {
-  const room = hasColourBar ? 0.25 : 0.14;
-  return `${resolution[0]} / ${0.87 * resolution[1] + room * resolution[0]}`;
-}
-
 /** A bar that says what the colours mean, above the plot, where it takes little room. */
 function colourBar(title) {
   return {
@@ -164,49 +164,49 @@ function colourBar(title) {
   };
 }
 
-/** Many points are drawn by WebGL, which draws them faster but cannot be printed as lines. */
-function pointTraceType(count) {
-  return count > 20000 ? "scattergl" : "scatter";
-}
+const drawQueue = [];
 
-const plotQueue = [];
+/** What is drawn here waits for its turn; `draw` may return a promise. */
+function whenItsTurnComes(place, draw) {
+  drawQueue.push({place, draw});
+}
 
 /**
  * A place for a plot, drawn when its turn comes.
  * @param build  () -> {data, layout}, or a text that says why there is nothing to draw.
- * @param options  {height: css, aspect: css}
+ * @param options  {height: css}
  */
 function plot(build, options = {}) {
   const place = element("div", {class: "plot"});
   if (options.height) place.style.height = options.height;
-  if (options.aspect) {
-    place.style.height = "auto";
-    place.style.aspectRatio = options.aspect;
-  }
-  plotQueue.push({place, build});
-  return place;
-}
-
-async function drawPlot({place, build}) {
-  try {
+  whenItsTurnComes(place, async () => {
     const figure = build();
     if (typeof figure === "string") {
       place.replaceWith(emptyNote(figure));
       return;
     }
     await Plotly.newPlot(place, figure.data, completeLayout(figure.layout), kConfig);
-    place.dispatchEvent(new Event("drawn"));
-  } catch (error) {
-    const reason = emptyNote(`This part could not be drawn: ${error.message}.`);
-    reason.classList.add("plot-failed");
-    place.replaceWith(reason);
-  }
+  });
+  return place;
 }
 
-/** Draws what waits, and lets the page breathe between two plots. */
-async function drawPlots() {
-  for (const waiting of plotQueue) {
-    await drawPlot(waiting);
+function isInView(place) {
+  const {top, bottom} = place.getBoundingClientRect();
+  return bottom > 0 && top < window.innerHeight;
+}
+
+/** Draws what waits: first what is in view, then the rest; between two the page can breathe. */
+async function drawAll() {
+  while (drawQueue.length > 0) {
+    const inView = drawQueue.findIndex(({place}) => isInView(place));
+    const [{place, draw}] = drawQueue.splice(Math.max(0, inView), 1);
+    try {
+      await draw();
+    } catch (error) {
+      const reason = emptyNote(`This part could not be drawn: ${error.message}.`);
+      reason.classList.add("plot-failed");
+      place.replaceWith(reason);
+    }
     await new Promise((resume) => setTimeout(resume, 0));
   }
 }
@@ -217,8 +217,8 @@ async function drawPlots() {
 const kPaperWidth = 640;
 
 function photograph(place) {
-  const picture = place._fullLayout?.scene?._scene?.toImage("png");
-  if (picture) place.querySelector("canvas").style.background = `url(${picture}) 0 0 / 100% 100%`;
+  const photo = place._fullLayout?.scene?._scene?.toImage("png");
+  if (photo) place.querySelector("canvas").style.background = `url(${photo}) 0 0 / 100% 100%`;
 }
 
 function onEveryPlot(fitLines, fitWebGl) {

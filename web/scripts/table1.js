@@ -26,19 +26,37 @@ function withSetting(setting, note) {
   return setting === "" ? note : `${capitalised(setting)}. ${note}`;
 }
 
-/** One sentence on a policy and handcrafted, and whether it is good, open or bad news. */
-function comparison(setting, row) {
+/** One sentence on a motion and a rival, and whether it is good, open or bad news. */
+function comparison(setting, row, rival, ratio, ratioInterval) {
   const where = setting === "" ? "" : `${capitalised(setting)}: `;
-  const ci = list(row.ratio_ci95);
+  const ci = list(ratioInterval);
   const known = ci.length === 2 && ci.every(isNumber);
   const range = known ? ` (95 % interval ${interval(ci)})` : "";
   const rigs = isNumber(row.n) ? `, over ${counted(row.n, "rig", "rigs")}` : "";
-  const sentence = `${where}${row.policy} has ${number(row.ratio_to_handcrafted, 3)} times the ` +
-      `error of handcrafted${range}${rigs}`;
+  const sentence = `${where}${row.policy} has ${number(ratio, 3)} times the error of ` +
+      `${rival}${range}${rigs}`;
   if (!known) return {verdict: "inform", text: `${sentence}.`};
   if (ci[1] < 1) return {verdict: "pass", text: `${sentence}: better, and more than chance.`};
   if (ci[0] > 1) return {verdict: "fail", text: `${sentence}: worse, and more than chance.`};
   return {verdict: "inconclusive", text: `${sentence}: no difference is shown.`};
+}
+
+/**
+ * What a policy is worth in one setting: against handcrafted as it is, and against random at a path
+ * no longer than random's.
+ */
+function comparisonsOf(policy, setting, rows) {
+  const row = rows.find((candidate) => candidate.policy === policy);
+  const fair = rows.find((candidate) => candidate.policy === `${policy} at random's path`) ?? row;
+  const made = [];
+  if (row && isNumber(row.ratio_to_handcrafted)) {
+    made.push(comparison(setting, row, "handcrafted", row.ratio_to_handcrafted, row.ratio_ci95));
+  }
+  if (fair && isNumber(fair.ratio_to_random)) {
+    made.push(comparison(setting, fair, "random", fair.ratio_to_random,
+                         fair.ratio_to_random_ci95));
+  }
+  return made;
 }
 
 const kComparisonTags = {
@@ -50,8 +68,7 @@ function table1Summary(result) {
   const all = [];
   for (const [setting, group] of settings(rows)) {
     for (const policy of ["learned", "fine-tuned"]) {
-      const row = group.find((candidate) => candidate.policy === policy);
-      if (row && isNumber(row.ratio_to_handcrafted)) all.push(comparison(setting, row));
+      all.push(...comparisonsOf(policy, setting, group));
     }
   }
   const failures = rows.reduce((sum, row) => sum + (row.failures ?? 0), 0);
@@ -60,7 +77,7 @@ function table1Summary(result) {
   if (all.length === 0) {
     const line = rows.length === 0 ? "Nothing was compared."
                                    : `${counted(rows.length, "row", "rows")} of results; none ` +
-                                     "compares a learned motion with handcrafted.";
+                                     "compares a learned motion with another.";
     return {verdict: "inform", line, details, findings: list(result.findings)};
   }
   const same = all.every((each) => each.verdict === all[0].verdict);
@@ -71,44 +88,68 @@ function table1Summary(result) {
   };
 }
 
-/** What a column says, by its key: header, digits. Those that no row has are left out. */
+/** A column by its key: what it is, its unit, digits, and the key of its interval. */
 const kColumns = [
-  ["n", "rigs", 4],
-  ["mean_error_percent", "mean error [%], 95 % interval", 3, "ci95"],
-  ["median_error_percent", "median error [%]", 3],
-  ["ratio_to_handcrafted", "error relative to handcrafted, 95 % interval", 3, "ratio_ci95"],
-  ["path_length_m", "path [m]", 4],
-  ["path_length_original_m", "path as the paper summed it [m]", 4],
-  ["motion_s", "time [s]", 3],
-  ["prediction_error_px", "prediction error [px]", 3],
-  ["focal_error_px", "focal length error [px]", 3],
-  ["translation_error_m", "translation error [m]", 3],
-  ["rotation_error_rad", "rotation error [rad]", 3],
-  ["time_offset_error_s", "time offset error [s]", 3],
-  ["a_optimality", "A-optimality", 3],
-  ["a_optimality_conditional", "A-optimality as the paper's code", 3],
-  ["error_over_bound", "error over bound [1]", 3],
-  ["failures", "failures", 4],
+  ["n", "rigs", "", 4],
+  ["mean_error_percent", "mean error", "%", 3, "ci95"],
+  ["ratio_to_handcrafted", "over handcrafted", "", 3, "ratio_ci95"],
+  ["ratio_to_random", "over random", "", 3, "ratio_to_random_ci95"],
+  ["path_length_m", "path", "m", 4],
+  ["motion_s", "time", "s", 3],
+  ["error_over_bound", "error over bound", "", 3],
+  ["failures", "failed", "", 4],
+];
+const kFurtherColumns = [
+  ["median_error_percent", "median error", "%", 3],
+  ["focal_error_px", "focal length error", "px", 3],
+  ["prediction_error_px", "prediction error", "px", 3],
+  ["translation_error_m", "translation error", "m", 3],
+  ["rotation_error_rad", "rotation error", "rad", 3],
+  ["time_offset_error_s", "time offset error", "s", 3],
+  ["a_optimality", "A-optimality", "", 3],
+  ["a_optimality_conditional", "A-optimality, conditional", "", 3],
+  ["path_length_original_m", "path as the paper summed it", "m", 4],
+  ["scale", "shrunk to fit by", "", 3],
 ];
 
 function policyCell(policy) {
   const swatch = element("span", {class: "swatch"});
   swatch.style.background = policyColour(policy);
-  return element("span", {}, swatch, policy);
+  return element("span", {class: "policy"}, swatch, policy);
 }
 
-function numberCell(row, [key, , digits, intervalKey]) {
+function headerCell([, name, unit]) {
+  return unit === "" ? name : element("span", {}, name, element("span", {class: "unit"}, unit));
+}
+
+function numberCell(row, [key, , , digits, intervalKey]) {
   const range = intervalKey ? interval(row[intervalKey], digits) : "";
-  if (range === "") return number(row[key], digits);
+  // A rival against itself.
+  if (range === "" || row[intervalKey][0] === row[intervalKey][1]) return number(row[key], digits);
   return element("span", {}, number(row[key], digits), element("span", {class: "interval"}, range));
 }
 
-function table1Table(setting, rows) {
-  const columns = kColumns.filter(([key]) => rows.some((row) => isNumber(row[key])));
-  return table(["motion", ...columns.map(([, header]) => header)],
+/** Columns of which no row has a number are left out. */
+function rowsTable(rows, candidates, caption) {
+  const columns = candidates.filter(([key]) => rows.some((row) => isNumber(row[key])));
+  return table(["motion", ...columns.map(headerCell)],
                rows.map((row) => [policyCell(row.policy ?? kNothing),
                                   ...columns.map((column) => numberCell(row, column))]),
-               capitalised(setting));
+               caption);
+}
+
+function table1Tables(setting, rows) {
+  const made = [rowsTable(rows, kColumns, capitalised(setting))];
+  if (kFurtherColumns.some(([key]) => rows.some((row) => isNumber(row[key])))) {
+    made.push(element("details", {}, element("summary", {}, "Further columns"),
+                      rowsTable(rows, kFurtherColumns, "")));
+  }
+  return made;
+}
+
+/** The name of a motion made shorter, broken where it says so. */
+function inTwoLines(policy) {
+  return plotText(policy).replace(" at ", "<br>at ");
 }
 
 function meanErrorCard(setting, rows) {
@@ -124,7 +165,7 @@ function meanErrorCard(setting, rows) {
                          arrayminus: [mean - range[0]], thickness: 2.5, width: 8}}
             : {};
         return {
-          type: "scatter", mode: "markers", x: [mean], y: [plotText(row.policy ?? kNothing)],
+          type: "scatter", mode: "markers", x: [mean], y: [inTwoLines(row.policy ?? kNothing)],
           showlegend: false, ...bars,
           marker: {size: 12, color: policyColour(row.policy), symbol: policySymbol(row.policy)},
           hovertemplate: `%{y}: ${number(mean, 3)} % (${interval(range)})<extra></extra>`,
@@ -139,15 +180,20 @@ function meanErrorCard(setting, rows) {
   return card("Mean error, with its 95 % interval", capitalised(setting), plot(build));
 }
 
+/** More rigs than this are drawn as a box and what lies far outside it. */
+const kMostDots = 100;
+
 function errorCard(setting, errors) {
   const build = () => {
     const known = errors.filter((each) => list(each.relative_error).some((x) => x > 0));
+    const few = known.every((each) => each.relative_error.length <= kMostDots);
     if (known.length === 0) return "The errors of the single rigs were not handed over.";
     return {
       data: known.map((each) => ({
-        type: "box", name: plotText(each.policy),
+        type: "box", name: inTwoLines(each.policy),
         y: each.relative_error.map((x) => isNumber(x) && x > 0 ? 100 * x : null),
-        boxpoints: "all", jitter: 0.6, pointpos: 0, showlegend: false,
+        boxpoints: few ? "all" : "outliers", jitter: few ? 0.6 : 0.3, pointpos: 0,
+        showlegend: false,
         marker: {color: policyColour(each.policy), size: 4, opacity: 0.6},
         line: {color: policyColour(each.policy), width: 2},
         fillcolor: "rgba(0,0,0,0)", hovertemplate: "%{y:.3g} %<extra></extra>",
@@ -159,8 +205,8 @@ function errorCard(setting, errors) {
     };
   };
   return card("Error on each rig",
-              withSetting(setting, "One dot a rig; the box holds the middle half, its line is " +
-                                       "the median."),
+              withSetting(setting, "The box holds the middle half of the rigs, its line is the " +
+                                       "median; a dot is a rig."),
               plot(build));
 }
 
@@ -174,17 +220,11 @@ function coverageByMethodCard(setting, coverage, resolution) {
   }
   const row = element("div", {class: "plot-row"});
   for (const each of known) {
-    const build = () => ({
-      data: [{
-        type: pointTraceType(each.pixels.length), mode: "markers",
-        x: each.pixels.map((pixel) => pixel[0]), y: each.pixels.map((pixel) => pixel[1]),
-        marker: {size: 3, color: policyColour(each.policy), opacity: 0.5},
-        hovertemplate: "(%{x:.1f}, %{y:.1f})<extra></extra>",
-      }],
-      layout: imageLayout(resolution),
-    });
-    row.append(element("div", {}, policyCell(each.policy),
-                       plot(build, {aspect: imageAspect(resolution, false)})));
+    const colour = policyColour(each.policy);
+    row.append(element("div", {}, policyCell(each.policy), picture(resolution, (pen) => {
+      pen.context.globalAlpha = 0.5;
+      pen.dots(each.pixels, 0.8, () => colour);
+    })));
   }
   made.append(row);
   return made;
@@ -194,10 +234,11 @@ function table1Section(result) {
   const rows = list(result.rows);
   const plots = result.plots ?? {};
   const made = element("div", {class: "cards"});
-  const tables = card("The table", "Errors are relative to the truth. A ratio whose interval " +
+  const tables = card("The table", "Errors are relative to the truth, ratios are of mean errors; " +
+                                   "each with its 95 % interval below. A ratio whose interval " +
                                    "excludes 1 is more than chance.");
   if (rows.length === 0) tables.append(emptyNote("There are no rows."));
-  for (const [setting, group] of settings(rows)) tables.append(table1Table(setting, group));
+  for (const [setting, group] of settings(rows)) tables.append(...table1Tables(setting, group));
   const resolution = plots.resolution ?? [640, 480];
   made.append(
       wide(tables),

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calibrato/base/time.h"
+#include "calibrato/calibration/camera_imu_problem.h"
+#include "calibrato/calibration/camera_imu_state.h"
+
+namespace calibrato {
+
+/// Where to start a camera-IMU calibration from, found in the data alone.
+struct CameraImuStart {
+  CameraImuState state;
+  double corner_noise_px = 1.0;  ///< Of one coordinate, from the views' own poses [px].
+};
+
+/// The board's pose in each view from its corners; the cameras' time offsets, rotations and the
+/// gyroscope's bias from rates (rate_alignment.h); orientations between views by integrating the
+/// gyroscope, the spline through them in closed form (SplineAlong); gravity as the mean of the
+/// specific force in frame g. Translations between IMU and cameras start at zero: the problem is
+/// linear in them, so that one step finds them.
+///
+/// The trajectory covers the time during which IMU 0 recorded and some camera had the board in
+/// view, and 50 ms more at either end where there is IMU data.
+/// @param knot_spacing_s  Reduced a little, so that whole blocks cover the trajectory.
+/// @return nothing where fewer than five pairs of views show the board, or where they and the IMU
+/// share no time.
+[[nodiscard]] std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem,
+                                                               const CameraImuOptions& options,
+                                                               double knot_spacing_s);
+
+}  // namespace calibrato

@@ -1,0 +1,158 @@
+#include "calibrato/cli/board_views.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/progress.h"
+#include "calibrato/calibration/frame_matching.h"
+#include "calibrato/detection/detect.h"
+#include "calibrato/recording/photo.h"
+
+namespace calibrato {
+namespace {
+
+// One image of a recording, or the corners of one.
+struct Entry {
+  Time stamp;
+  int frame = 0;
+};
+
+std::vector<Time> StampsOf(const CameraRecording& camera) {
+  std::vector<Time> stamps;
+  if (const auto* views = std::get_if<std::vector<BoardView>>(&camera.data)) {
+    for (const BoardView& view : *views) stamps.push_back(view.stamp);
+  } else {
+    for (const ImageFile& image : std::get<std::vector<ImageFile>>(camera.data)) {
+      stamps.push_back(image.stamp);
+    }
+  }
+  return stamps;
+}
+
+// [camera][image]: stamps and frames.
+std::vector<std::vector<Entry>> EntriesOf(const Recording& recording, bool* is_stamped) {
+  std::vector<std::vector<BoardView>> stamped;
+  *is_stamped = false;
+  for (const CameraRecording& camera : recording.cameras) {
+    stamped.emplace_back();
+    for (const Time stamp : StampsOf(camera)) {
+      stamped.back().emplace_back();
+      stamped.back().back().stamp = stamp;
+      if (stamp != Time()) *is_stamped = true;
+    }
+  }
+  std::vector<std::vector<int>> frames(stamped.size());
+  if (*is_stamped) frames = FramesByStamp(stamped, DefaultStampTolerance(stamped));
+  std::vector<std::vector<Entry>> entries(stamped.size());
+  for (size_t c = 0; c < stamped.size(); ++c) {
+    for (size_t k = 0; k < stamped[c].size(); ++k) {
+      entries[c].push_back({stamped[c][k].stamp, *is_stamped ? frames[c][k] : static_cast<int>(k)});
+    }
+  }
+  return entries;
+}
+
+// Which images lie in the window.
+std::vector<std::vector<bool>> Inside(const std::vector<std::vector<Entry>>& entries,
+                                      bool is_stamped, const std::string& path,
+                                      const RecordingWindow& window) {
+  if ((window.from_s || window.to_s) && !is_stamped) {
+    throw InputError({"photos without stamps have no time", path, "--from and --to need one",
+                      "leave them out, or choose photos by --images"});
+  }
+  Time first = Time::FromNanoseconds(INT64_MAX);
+  for (const auto& camera : entries) {
+    if (!camera.empty()) first = std::min(first, camera.front().stamp);
+  }
+  std::vector<std::vector<bool>> inside(entries.size());
+  bool any = false;
+  for (size_t c = 0; c < entries.size(); ++c) {
+    for (const Entry& entry : entries[c]) {
+      const double time = (entry.stamp - first).seconds();
+      inside[c].push_back(entry.frame % window.every == 0 && !(window.from_s > time) &&
+                          !(window.to_s && *window.to_s < time));
+      any = any || inside[c].back();
+    }
+  }
+  if (!any) {
+    throw InputError({"no images left", path, "none lies between --from and --to",
+                      "choose times [s] from the recording's first image on"});
+  }
+  return inside;
+}
+
+CameraViews ListedViews(const CameraRecording& camera, const std::vector<Entry>& entries,
+                        const std::vector<bool>& inside) {
+  if (!camera.resolution) {
+    throw InputError({"unknown image size", camera.name, "a list of corners does not tell it",
+                      "give --resolution WIDTHxHEIGHT or a sensor.yaml"});
+  }
+  const auto& views = std::get<std::vector<BoardView>>(camera.data);
+  CameraViews found;
+  found.resolution = *camera.resolution;
+  for (size_t k = 0; k < views.size(); ++k) {
+    if (!inside[k]) continue;
+    found.views.push_back(views[k]);
+    found.frame_of_view.push_back(entries[k].frame);
+  }
+  return found;
+}
+
+CameraViews DetectedViews(const CameraRecording& camera, const std::vector<Entry>& entries,
+                          const std::vector<bool>& inside, const std::optional<Board>& board,
+                          Progress* progress) {
+  if (!board) {
+    throw InputError({"no board given", camera.name, "images are searched for a known board",
+                      "give --target board.yaml"});
+  }
+  const auto& images = std::get<std::vector<ImageFile>>(camera.data);
+  ImageSource source;
+  std::vector<std::string> paths;
+  std::map<std::string, int> frames;
+  for (size_t k = 0; k < images.size(); ++k) {
+    if (!inside[k]) continue;
+    source.names.push_back(images[k].name);
+    source.stamps.push_back(images[k].stamp);
+    paths.push_back(images[k].path);
+    frames[images[k].name] = entries[k].frame;
+  }
+  source.load = [&](size_t k) {
+    progress->Advance();
+    return ReadPhoto(paths[k]);
+  };
+  Detections detections = DetectBoards(source, *board);
+  CameraViews found{std::move(detections.views), {},
+                    detections.resolution,       std::move(detections.images_without_board),
+                    detections.rejected,         detections.is_numbered_by_continuity};
+  for (const BoardView& view : found.views) found.frame_of_view.push_back(frames.at(view.name));
+  return found;
+}
+
+}  // namespace
+
+std::vector<CameraViews> FindBoardViews(const Recording& recording,
+                                        const std::optional<Board>& board,
+                                        const RecordingWindow& window) {
+  bool is_stamped = false;
+  const auto entries = EntriesOf(recording, &is_stamped);
+  const auto inside = Inside(entries, is_stamped, recording.path, window);
+  int64_t num_images = 0;
+  for (size_t c = 0; c < inside.size(); ++c) {
+    if (!std::holds_alternative<std::vector<ImageFile>>(recording.cameras[c].data)) continue;
+    num_images += std::count(inside[c].begin(), inside[c].end(), true);
+  }
+  Progress progress("finding the board", num_images);
+  std::vector<CameraViews> found;
+  for (size_t c = 0; c < recording.cameras.size(); ++c) {
+    const CameraRecording& camera = recording.cameras[c];
+    found.push_back(std::holds_alternative<std::vector<ImageFile>>(camera.data)
+                        ? DetectedViews(camera, entries[c], inside[c], board, &progress)
+                        : ListedViews(camera, entries[c], inside[c]));
+  }
+  return found;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrato/calibration/camera_imu_calibration.h"
+#include "calibrato/diagnosis/camera_imu_parts.h"
+#include "calibrato/diagnosis/camera_imu_residuals.h"
+#include "calibrato/diagnosis/finding.h"
+
+namespace calibrato {
+
+/// Whether one number of the result may be believed.
+struct ParameterVerdict {
+  std::string name;    ///< "cam0.rot_x", "cam0.pos_x", "cam0.time_offset"
+  double sigma = 0.0;  ///< [rad], [m] or [s]; NaN where it is not observable.
+  Verdict verdict = Verdict::kPass;
+};
+
+/// What is wrong with a camera-IMU calibration, and what it was judged by.
+struct CameraImuDiagnosis {
+  std::vector<Finding> findings;  ///< The worst first.
+  /// Of each camera: rotation about and translation along x, y, z of the camera, then the time
+  /// offset where it was estimated. Empty without a state.
+  std::vector<ParameterVerdict> parameters;
+  std::optional<CameraImuResidualSummary> residuals;  ///< Where there is a state.
+  std::optional<CameraImuSplit> split;
+  std::vector<CameraImuKnowledge> knowledge;  ///< Over time; empty without a state.
+};
+
+/// Thresholds: docs/formats.md section 1.
+/// - fail, of all parameters: not converged, an IMU's residuals over three times its stated noise;
+/// - inconclusive, of one: sigma above 1 degree, 20 mm or 5 ms, or not observable; the finding says
+///   about which axes to rotate faster;
+/// - warn, of one: sigma above 0.2 degrees, 5 mm or 0.5 ms, or halves of the recording that
+///   disagree by more than three sigmas;
+/// - info: noise that is not as stated, outliers left out, measurements that play no part.
+[[nodiscard]] CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
+                                                   const CameraImuCalibration& calibration);
+
+}  // namespace calibrato

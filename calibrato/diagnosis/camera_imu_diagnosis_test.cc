@@ -1,0 +1,178 @@
+#include "calibrato/diagnosis/camera_imu_diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrato/calibration/synthetic_camera_imu_for_test.h"
+#include "calibrato/diagnosis/camera_imu_document.h"
+#include "calibrato/diagnosis/camera_imu_plots.h"
+
+namespace calibrato {
+namespace {
+
+CameraImuReport ReportOn(const CameraImuProblem& problem) {
+  CameraImuReport report{problem, CalibrateCameraImu(problem), {}, {}};
+  report.diagnosis = DiagnoseCameraImu(problem, report.calibration);
+  return report;
+}
+
+CameraImuReport ReportOn(const SyntheticCameraImu& truth, uint64_t seed = 1) {
+  Rng rng(seed);
+  return ReportOn(truth.Problem(rng));
+}
+
+// Whether a finding of this severity says these words.
+bool Says(const CameraImuReport& report, Severity severity, const std::string& words) {
+  const auto& findings = report.diagnosis.findings;
+  return std::any_of(findings.begin(), findings.end(), [&](const Finding& finding) {
+    return finding.severity == severity &&
+           (finding.what + " | " + finding.remedy).find(words) != std::string::npos;
+  });
+}
+
+TEST(SigmasOf, NamesWhatIsUndeterminedAndKnowsTheRest) {
+  // The first parameter is known to 1/2; of the other two only their sum is.
+  CameraImuInformation information;
+  information.names = {"a", "b", "c"};
+  information.information_matrix.resize(3, 3);
+  information.information_matrix << 4, 0, 0, 0, 1, 1, 0, 1, 1;
+  const std::vector<double> sigmas = SigmasOf(information);
+  EXPECT_NEAR(sigmas[0], 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(sigmas[1]));
+  EXPECT_TRUE(std::isnan(sigmas[2]));
+}
+
+TEST(DiagnoseCameraImu, PassesAGoodRecordingWithoutAWord) {
+  const CameraImuReport report = ReportOn(SyntheticCameraImu());
+  EXPECT_EQ(VerdictOf(report), Verdict::kPass) << CameraImuText(report);
+  EXPECT_TRUE(report.diagnosis.findings.empty()) << CameraImuText(report);
+  ASSERT_EQ(report.diagnosis.parameters.size(), 7u);
+  EXPECT_EQ(report.diagnosis.parameters[0].name, "cam0.rot_x");
+  EXPECT_EQ(report.diagnosis.parameters[6].name, "cam0.time_offset");
+  ASSERT_TRUE(report.diagnosis.split.has_value());
+  EXPECT_FALSE(report.diagnosis.split->cameras[0].significance.is_significant());
+  EXPECT_NEAR(report.diagnosis.residuals->gyros[0].normalised, 1.0, 0.1);
+  EXPECT_NEAR(report.diagnosis.residuals->accels[0].normalised, 1.0, 0.1);
+}
+
+TEST(DiagnoseCameraImu, KnowsMoreTheLongerItLooks) {
+  const CameraImuReport report = ReportOn(SyntheticCameraImu());
+  const std::vector<CameraImuKnowledge>& knowledge = report.diagnosis.knowledge;
+  ASSERT_GT(knowledge.size(), 4u);
+  for (size_t k = 1; k < knowledge.size(); ++k) {
+    EXPECT_LT(knowledge[k].translation_sigma_m, knowledge[k - 1].translation_sigma_m * (1 + 1e-6));
+  }
+  // At the end it knows what the calibration states.
+  double squared = 0.0;
+  for (size_t k = 3; k < 6; ++k) squared += std::pow(report.diagnosis.parameters[k].sigma, 2);
+  EXPECT_NEAR(knowledge.back().translation_sigma_m, std::sqrt(squared), 0.02 * std::sqrt(squared));
+}
+
+TEST(DiagnoseCameraImu, IsInconclusiveWhereTheRigHardlyTurned) {
+  SyntheticCameraImu truth;
+  truth.rotation = 0.01;
+  truth.imu_noise.accel_noise_density *= 3.0;
+  const CameraImuReport report = ReportOn(truth);
+  EXPECT_EQ(VerdictOf(report), Verdict::kInconclusive) << CameraImuText(report);
+  EXPECT_TRUE(Says(report, Severity::kInconclusive, "cam0: the translation along"));
+  EXPECT_TRUE(Says(report, Severity::kInconclusive, "which it hardly did"));
+}
+
+TEST(DiagnoseCameraImu, FailsWhereTheNoiseIsFarFromWhatIsStated) {
+  Rng rng(1);
+  CameraImuProblem problem = SyntheticCameraImu().Problem(rng);
+  problem.imus[0].noise.gyro_noise_density /= 10.0;
+  const CameraImuReport report = ReportOn(problem);
+  EXPECT_EQ(VerdictOf(report), Verdict::kFail) << CameraImuText(report);
+  EXPECT_TRUE(Says(report, Severity::kFail, "imu0: the gyroscope does not fit"));
+  EXPECT_EQ(report.diagnosis.parameters[0].verdict, Verdict::kFail);
+}
+
+TEST(DiagnoseCameraImu, CountsWhatWasLeftOut) {
+  Rng rng(1);
+  CameraImuProblem problem = SyntheticCameraImu().Problem(rng);
+  for (const size_t k : {500, 501, 900}) problem.imus[0].stream.gyro[k].value.x() += 3.0;
+  BoardView& late = problem.cameras[0].views[50];
+  late.pixels.row(0).array() += 40.0;
+  const CameraImuReport report = ReportOn(problem);
+  EXPECT_EQ(report.diagnosis.residuals->gyros[0].num_outliers, 3);
+  EXPECT_TRUE(Says(report, Severity::kInfo, "imu0: 3 of"));
+  EXPECT_TRUE(Says(report, Severity::kInfo, late.name));
+}
+
+TEST(DiagnoseCameraImu, SeesThatTheCameraMovedOnTheRigHalfWayThrough) {
+  SyntheticCameraImu truth;
+  Rng rng(1);
+  CameraImuProblem problem = truth.Problem(rng);
+  // The second half's images are those of a camera 2 mm to the side.
+  SyntheticCameraImu moved = truth;
+  moved.T_c_i[0].t.x() += 0.002;
+  Rng other_rng(2);
+  const CameraImuProblem other = moved.Problem(other_rng);
+  std::vector<BoardView>& views = problem.cameras[0].views;
+  views.resize(views.size() / 2);
+  for (const BoardView& view : other.cameras[0].views) {
+    if (view.stamp > views.back().stamp) views.push_back(view);
+  }
+  const CameraImuReport report = ReportOn(problem);
+  EXPECT_TRUE(Says(report, Severity::kWarn, "disagree: cam0.pos_x by")) << CameraImuText(report);
+}
+
+TEST(CameraImuResult, HasTheKeysOfTheFormats) {
+  const CameraImuReport report = ReportOn(SyntheticCameraImu());
+  const Value result = CameraImuResult(report);
+  EXPECT_EQ(result.At("kind").AsString(), "camera-imu");
+  EXPECT_EQ(result.At("verdict").AsString(), "pass");
+  const Value& camera = result.At("cameras").elements()[0];
+  EXPECT_EQ(camera.At("T_cam_imu").AsDoubles(16)[15], 1.0);
+  EXPECT_NEAR(camera.At("time_offset_s").AsDouble(), 0.0073, 1e-4);
+  for (const char* key : {"rotation_sigma_rad", "translation_sigma_m"}) {
+    for (const double sigma : camera.At(key).AsDoubles(3)) EXPECT_GT(sigma, 0.0);
+  }
+  EXPECT_GT(camera.At("time_offset_sigma_s").AsPositive(), 0.0);
+  EXPECT_EQ(result.At("imus").elements()[0].At("gyro_bias").AsDoubles(3).size(), 3u);
+  EXPECT_EQ(result.At("gravity_g").AsDoubles(3).size(), 3u);
+  EXPECT_EQ(result.At("information").At("eigenvalues").AsDoubles(6).size(), 6u);
+  EXPECT_NEAR(result.At("residuals").At("accel_normalised").AsDouble(), 1.0, 0.1);
+  const size_t size = result.At("covariance").At("names").size();
+  EXPECT_EQ(result.At("covariance").At("matrix").size(), size);
+}
+
+TEST(CameraImuResult, WithoutAnEstimateSaysWhy) {
+  Rng rng(1);
+  CameraImuProblem problem = SyntheticCameraImu().Problem(rng);
+  for (BoardView& view : problem.cameras[0].views) {
+    view.stamp = view.stamp + Duration::FromSeconds(1000.0);
+  }
+  const CameraImuReport report = ReportOn(problem);
+  const Value result = CameraImuResult(report);
+  EXPECT_EQ(result.At("verdict").AsString(), "fail");
+  EXPECT_EQ(result.Find("cameras"), nullptr);
+  EXPECT_EQ(CameraImuPlots(report).size(), 0u);
+}
+
+TEST(CameraImuPlots, PredictWhatWasMeasured) {
+  const CameraImuReport report = ReportOn(SyntheticCameraImu());
+  const Value plots = CameraImuPlots(report);
+  const Value& gyro = plots.At("imus").elements()[0].At("gyro");
+  const double sigma = gyro.At("stddev").AsDouble();
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto high = [&](const char* what) {
+      return gyro.At(what).elements()[size_t(axis)].At("high").AsDoubles();
+    };
+    const std::vector<double> measured = high("measured");
+    const std::vector<double> predicted = high("predicted");
+    ASSERT_EQ(measured.size(), predicted.size());
+    for (size_t k = 0; k < measured.size(); ++k) {
+      EXPECT_NEAR(measured[k], predicted[k], 6.0 * sigma + 1e-4);
+    }
+  }
+  EXPECT_LE(plots.At("cameras").elements()[0].At("corner_residuals").size(), 1500u);
+  EXPECT_EQ(plots.At("board_outline_g").size(), 4u);
+  EXPECT_NEAR(plots.At("cameras").elements()[0].At("median_interval_ms").AsDouble(), 50.0, 1e-3);
+}
+
+}  // namespace
+}  // namespace calibrato

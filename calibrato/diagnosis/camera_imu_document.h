@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calibrato/base/value.h"
+#include "calibrato/diagnosis/camera_imu_diagnosis.h"
+#include "calibrato/diagnosis/finding.h"
+
+namespace calibrato {
+
+/// A camera-IMU calibration with all that is said about it.
+struct CameraImuReport {
+  CameraImuProblem problem;
+  CameraImuCalibration calibration;
+  CameraImuDiagnosis diagnosis;
+  std::vector<Finding> findings;  ///< On the recording (stream_check.h).
+};
+
+/// All findings, the worst first.
+[[nodiscard]] std::vector<Finding> FindingsOf(const CameraImuReport& report);
+/// The worst of them.
+[[nodiscard]] Verdict VerdictOf(const CameraImuReport& report);
+
+/// result.json of `calibrate camera-imu` (docs/formats.md section 3):
+///     {"kind": "camera-imu", "termination", "verdict", "findings",
+///      "cameras": [{"T_cam_imu": 4x4, "time_offset_s", "rotation_sigma_rad": [3],
+///                   "translation_sigma_m": [3], "time_offset_sigma_s",
+///                   "verdicts": {"rotation": [3], "translation": [3], "time_offset"},
+///                   "split": {"difference_rad_m_s": [7], "sigma_rad_m_s": [7], "probability"},
+///                   "reprojection_rms_px", "num_views", "num_corners", "num_outliers",
+///                   "rejected_views": [names]}],
+///      "imus": [{"model", "gyro_bias": [3], "accel_bias": [3], means over time,
+///                "gyro": {"rms", "normalised", "num_samples", "num_outliers"}, "accel": likewise,
+///                "noise": {"gyro_noise_density", "accel_noise_density"}, "stated_noise": likewise,
+///                "T_i_imu": 4x4, "time_offset_s"}],
+///      "gravity_g": [3], "knot_spacing_s", "num_iterations",
+///      "change_with_finer_knots": in sigmas, null if it was not looked for,
+///      "covariance": {"names", "matrix"},
+///      "information": {"a_optimality", "d_optimality", "e_optimality", "eigenvalues",
+///                      "a_optimality_conditional"},
+///      "residuals": {"reprojection_rms_px", "reprojection_rms_all_px", "corner_noise_px",
+///                    "reprojection_normalised", "gyro_rms_rad_s", "gyro_normalised",
+///                    "accel_rms_m_s2", "accel_normalised"} of camera 0 and IMU 0}
+/// Sigmas are null where a parameter is not observable. Without an estimate only the first four
+/// keys stand.
+[[nodiscard]] Value CameraImuResult(const CameraImuReport& report);
+
+/// The result in plain text, for the terminal.
+[[nodiscard]] std::string CameraImuText(const CameraImuReport& report);
+
+}  // namespace calibrato

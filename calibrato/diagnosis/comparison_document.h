@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrato/base/value.h"
+#include "calibrato/calibration/comparison.h"
+
+namespace calibrato {
+
+/// Two results of `calibrate camera`, camera by camera.
+struct ResultComparison {
+  struct CameraPair {
+    std::string name;  ///< "cam0"
+    std::string first_model;
+    std::string second_model;
+    Resolution resolution;
+    CameraComparison camera;
+    std::optional<PoseComparison> T_cn_cnm1;  ///< Where both results have it.
+  };
+  std::vector<CameraPair> cameras;
+};
+
+enum class Agreement {
+  kAgree,        ///< Nothing beyond chance.
+  kDiffer,       ///< Some difference is significant.
+  kInconclusive  ///< None is known to be significant, but a covariance is missing.
+};
+[[nodiscard]] std::string AgreementName(Agreement agreement);  ///< "agree", "differ", ..
+
+/// From two result.json.
+/// @throws InputError: of another kind, another number of cameras, not calibrated, other image
+/// size.
+[[nodiscard]] ResultComparison CompareResults(const Value& first, const Value& second);
+
+/// Where several differences are tested, each must be as much rarer by chance (Bonferroni).
+[[nodiscard]] Agreement AgreementOf(const ResultComparison& comparison);
+
+/// {"kind": "diff", "agreement", "cameras": [{"name", "models": [2], "resolution": [w, h],
+/// "probability", "statistic", "degrees_of_freedom", "tested": "parameters" or "projection",
+/// "rms_difference_px", "expected_rms_difference_px", "rotation_rad": [3], "difference_px": map
+/// (checks_document.h), "T_cn_cnm1": {"rotation_rad", "translation_m", "probability"}}, ..]}
+[[nodiscard]] Value ComparisonResult(const ResultComparison& comparison);
+
+/// In plain text, for the terminal.
+[[nodiscard]] std::string ComparisonText(const ResultComparison& comparison);
+
+}  // namespace calibrato

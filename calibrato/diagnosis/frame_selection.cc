@@ -1,0 +1,98 @@
+#include "calibrato/diagnosis/frame_selection.h"
+
+#include <cstdio>
+#include <set>
+#include <utility>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
+#include "calibrato/calibration/bundle_adjustment.h"
+#include "calibrato/calibration/view_selection.h"
+
+namespace calibrato {
+namespace {
+
+std::vector<size_t> AllOf(const CameraProblem& camera) {
+  std::vector<size_t> all(camera.views.size());
+  for (size_t v = 0; v < all.size(); ++v) all[v] = v;
+  return all;
+}
+
+// The views that tell most of the camera, and what is to be said of the rest.
+std::vector<size_t> InformativeViews(const CameraProblem& camera, const std::string& name,
+                                     std::vector<Finding>* findings) {
+  const CameraCalibration calibration = CalibrateCamera(camera);
+  if (calibration.covariance.size() == 0) return AllOf(camera);
+  const double variance = calibration.noise_stddev_px * calibration.noise_stddev_px;
+  const std::vector<BoardView>& used = calibration.used_views;
+  const auto information = ParallelMap<Eigen::MatrixXd>(used.size(), [&](size_t v) {
+    return Eigen::MatrixXd(
+        CameraInformation(*calibration.model, {calibration.T_c_g[v]}, {used[v]}, camera.fixed) /
+        variance);
+  });
+  const int focal = CameraModel::FocalIndex(camera.model);
+  const InformationSelection selection =
+      SelectByInformation(information, {focal, focal + 1, focal + 2, focal + 3});
+  std::vector<size_t> kept;
+  for (const size_t v : selection.kept) kept.push_back(calibration.used_view_indices[v]);
+  if (kept.size() < static_cast<size_t>(kMinViews)) return AllOf(camera);
+  std::string what = name + ": the first " + std::to_string(selection.num_enough) + " of " +
+                     std::to_string(used.size()) + " views";
+  if (const auto time = TimeOfFirst(selection.num_enough, used)) {
+    char seconds[32];
+    std::snprintf(seconds, sizeof(seconds), " (%.1f s)", time->seconds());
+    what += seconds;
+  }
+  what += " knew as much as the " + std::to_string(kept.size()) + " that were kept";
+  findings->push_back({Severity::kInfo, what, ""});
+  return kept;
+}
+
+void Keep(const std::set<int>& frames, CameraRigProblem* problem) {
+  for (size_t c = 0; c < problem->cameras.size(); ++c) {
+    std::vector<BoardView> views;
+    std::vector<int> frame_of_view;
+    for (size_t v = 0; v < problem->cameras[c].views.size(); ++v) {
+      const int frame = problem->frame_of_view[c][v];
+      if (!frames.contains(frame)) continue;
+      views.push_back(std::move(problem->cameras[c].views[v]));
+      frame_of_view.push_back(frame);
+    }
+    problem->cameras[c].views = std::move(views);
+    problem->frame_of_view[c] = std::move(frame_of_view);
+  }
+}
+
+}  // namespace
+
+FrameSelection FrameSelectionFromName(const std::string& name) {
+  if (name == "all") return FrameSelection::kAll;
+  if (name == "coverage") return FrameSelection::kCoverage;
+  if (name == "information") return FrameSelection::kInformation;
+  throw InputError(
+      {"unknown selection '" + name + "'", "", "", "use all, coverage or information"});
+}
+
+std::vector<Finding> SelectFrames(FrameSelection selection, CameraRigProblem* problem) {
+  if (selection == FrameSelection::kAll) return {};
+  std::vector<Finding> findings;
+  std::set<int> all;
+  std::set<int> kept;
+  for (size_t c = 0; c < problem->cameras.size(); ++c) {
+    const CameraProblem& camera = problem->cameras[c];
+    const std::vector<size_t> chosen =
+        selection == FrameSelection::kCoverage
+            ? SelectByCoverage(camera.views, camera.resolution)
+            : InformativeViews(camera, "cam" + std::to_string(c), &findings);
+    for (const size_t v : chosen) kept.insert(problem->frame_of_view[c][v]);
+    all.insert(problem->frame_of_view[c].begin(), problem->frame_of_view[c].end());
+  }
+  Keep(kept, problem);
+  findings.insert(findings.begin(), {Severity::kInfo,
+                                     std::to_string(kept.size()) + " of " +
+                                         std::to_string(all.size()) + " frames were selected",
+                                     ""});
+  return findings;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,268 @@
+#include "calibrato/diagnosis/stream_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "calibrato/diagnosis/rotation_speed.h"
+#include "calibrato/diagnosis/stream_defects.h"
+#include "calibrato/diagnosis/upper_median.h"
+
+namespace calibrato {
+namespace {
+
+constexpr size_t kMinViews = 10;
+constexpr double kMaxRateError = 0.1;
+constexpr double kMinOverlap = 0.9;
+constexpr double kMaxOffset = 0.1;  // [s]
+constexpr double kSureCorrelation = 0.8;
+constexpr double kNoCorrelation = 0.4;
+constexpr double kUnitTolerance = 0.2;
+constexpr double kFastestHand = 10.0;  // Median rate [rad/s] that no hand holds.
+
+bool IsNear(double value, double expected) {
+  return value >= (1.0 - kUnitTolerance) * expected && value <= (1.0 + kUnitTolerance) * expected;
+}
+
+double MedianNorm(const std::vector<VectorSample>& samples) {
+  std::vector<double> norms;
+  norms.reserve(samples.size());
+  for (const VectorSample& sample : samples) norms.push_back(sample.value.norm());
+  return UpperMedian(std::move(norms));
+}
+
+// The times between the first and the last of something.
+struct Span {
+  Time begin;
+  Time end;
+  double length_s() const { return (end - begin).seconds(); }
+};
+
+Span SpanOf(const std::vector<VectorSample>& samples) {
+  return {samples.front().stamp, samples.back().stamp};
+}
+
+// Negative if they have no part in common.
+double OverlapSeconds(const Span& a, const Span& b) {
+  return (std::min(a.end, b.end) - std::max(a.begin, b.begin)).seconds();
+}
+
+class Findings {
+ public:
+  explicit Findings(std::vector<Finding>* findings) : findings_(findings) {}
+  void Fail(const std::string& what, const std::string& remedy) {
+    findings_->push_back({Severity::kFail, what, remedy});
+  }
+  void Warn(const std::string& what, const std::string& remedy) {
+    findings_->push_back({Severity::kWarn, what, remedy});
+  }
+
+ private:
+  std::vector<Finding>* findings_;
+};
+
+void CheckSamples(const std::string& sensor, const StreamDefects& defects, const char* unit,
+                  Findings* findings) {
+  const auto share = [&](size_t count) {
+    return Format("%zu of %zu samples", count, defects.num_samples);
+  };
+  if (defects.num_not_finite > 0) {
+    findings->Warn(sensor + ": " + share(defects.num_not_finite) + " are not finite numbers",
+                   "they are left out; look at the program that recorded them");
+  }
+  if (defects.num_out_of_order > 0) {
+    findings->Warn(sensor + ": " + share(defects.num_out_of_order) +
+                       " have a stamp earlier than the one before",
+                   "they are sorted; take stamps when the sensor measures, not when a message "
+                   "arrives");
+  }
+  if (defects.num_duplicates > 0) {
+    findings->Warn(
+        sensor + ": " + share(defects.num_duplicates) + " repeat the stamp of another",
+        "the first of each is kept; check that every sample gets a stamp of its own, with "
+        "nanoseconds enough to tell them apart");
+  }
+  if (defects.num_gaps > 0) {
+    findings->Warn(
+        sensor + Format(": %zu gap%s, the longest %.3f s after the stamp %lld", defects.num_gaps,
+                        defects.num_gaps == 1 ? "" : "s", defects.longest_gap_s,
+                        static_cast<long long>(defects.longest_gap_begin.nanoseconds())),
+        "the motion there is known from images alone; record to a faster disk, or over "
+        "a cable that loses nothing");
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string name = sensor + " " + "xyz"[axis];
+    if (defects.is_constant[axis]) {
+      findings->Warn(name + " never changes", "check the driver, and the columns of the file");
+    } else if (defects.num_saturated[axis] > 0) {
+      findings->Warn(
+          name + ": " + share(defects.num_saturated[axis]) +
+              Format(" stand at the end of its range, %.4g %s", defects.saturated_at[axis], unit),
+          "move more gently there, or set the sensor to a wider range");
+    }
+  }
+}
+
+void CheckRate(const std::string& sensor, const StreamDefects& defects, double expected_hz,
+               Findings* findings) {
+  if (!(defects.median_period_s > 0.0)) return;
+  const double rate_hz = 1.0 / defects.median_period_s;
+  if (std::abs(rate_hz / expected_hz - 1.0) <= kMaxRateError) return;
+  findings->Warn(
+      sensor + Format(": samples come at %.4g Hz, the YAML says %.4g Hz", rate_hz, expected_hz),
+      Format("set update_rate: %.1f, or else noise is weighted wrongly", rate_hz));
+}
+
+void CheckOverlap(const std::string& camera_name, const Span& camera, const std::string& imu_name,
+                  const Span& imu, Findings* findings) {
+  const double overlap_s = OverlapSeconds(camera, imu);
+  const std::string both = imu_name + " and " + camera_name;
+  if (!(overlap_s > 0.0)) {
+    findings->Fail(
+        both + Format(" have no time in common: %s begins %.3f s %s %s, and they last "
+                      "%.3f s and %.3f s",
+                      imu_name.c_str(), std::abs((imu.begin - camera.begin).seconds()),
+                      imu.begin < camera.begin ? "before" : "after", camera_name.c_str(),
+                      imu.length_s(), camera.length_s()),
+        Format("give both stamps of one clock; if they began together, add %.3f s to the "
+               "stamps of %s",
+               (camera.begin - imu.begin).seconds(), imu_name.c_str()));
+  } else if (overlap_s < kMinOverlap * camera.length_s()) {
+    findings->Warn(both + Format(" share %.1f s, of the %.1f s of %s", overlap_s, camera.length_s(),
+                                 camera_name.c_str()),
+                   "images without IMU samples are of little use: start the IMU first and stop it "
+                   "last, and check that both stamps are of one clock");
+  }
+}
+
+// Sizes alone, of one IMU. @return False if its columns are swapped.
+bool CheckSizes(const std::string& name, const ImuStream& stream, Findings* findings) {
+  const double rate = MedianNorm(stream.gyro);
+  const double force = MedianNorm(stream.accel);
+  if (IsNear(rate, kStandardGravity) && force < 0.5 * kStandardGravity) {
+    findings->Fail(name + Format(": the gyroscope's columns read %.3g, as gravity does, and the "
+                                 "accelerometer's %.3g",
+                                 rate, force),
+                   "swap the columns of gyroscope and accelerometer: Kalibr's order is stamp, "
+                   "rates, forces");
+    return false;
+  }
+  const std::string what =
+      name + Format(": the specific force is %.4g m/s^2 (median), gravity is %.4g", force,
+                    kStandardGravity);
+  if (IsNear(force, 1.0)) {
+    findings->Fail(what + ": it is in g", "multiply the accelerometer's columns by 9.80665");
+  } else if (IsNear(force, 1000.0)) {
+    findings->Fail(what + ": it is in thousandths of g or in cm/s^2",
+                   "multiply the accelerometer's columns by 0.00980665 or by 0.01");
+  } else if (force < 0.5 * kStandardGravity) {
+    findings->Fail(what + ": gravity was taken out of it",
+                   "record the raw accelerometer, not the linear acceleration that a phone makes "
+                   "of it");
+  } else if (!IsNear(force, kStandardGravity)) {
+    findings->Fail(what, "check the accelerometer's unit and range; it should be in m/s^2");
+  }
+  return true;
+}
+
+// Against the board's motion, where it can be had.
+void CheckSpeeds(const CheckedCamera& camera, const std::string& imu_name,
+                 const std::vector<VectorSample>& gyro, Findings* findings) {
+  const double degrees = 180.0 / std::numbers::pi;
+  const std::string in_degrees = "multiply the gyroscope's columns by 0.0174532925";
+  std::optional<SpeedComparison> speeds;
+  if (camera.model) {
+    const std::vector<RotationSpeed> board = RotationSpeeds(*camera.model, camera.views);
+    const Span views{camera.views.front().stamp, camera.views.back().stamp};
+    const bool is_apart = !(OverlapSeconds(views, SpanOf(gyro)) > 0.0);
+    const double centre_s = is_apart ? (gyro.front().stamp - views.begin).seconds() : 0.0;
+    speeds = CompareSpeeds(board, gyro, centre_s);
+  }
+  if (!speeds) {
+    const double rate = MedianNorm(gyro);
+    if (rate > kFastestHand) {
+      findings->Fail(imu_name + Format(": the gyroscope reads %.3g rad/s (median), faster than a "
+                                       "hand turns: it may be in deg/s",
+                                       rate),
+                     in_degrees);
+    }
+    return;
+  }
+  if (speeds->correlation >= kSureCorrelation) {
+    if (IsNear(speeds->scale, degrees)) {
+      findings->Fail(
+          imu_name + Format(": the gyroscope turns %.3g times as fast as the board in %s: "
+                            "it is in deg/s",
+                            speeds->scale, camera.name.c_str()),
+          in_degrees);
+    } else if (!IsNear(speeds->scale, 1.0)) {
+      findings->Warn(
+          imu_name + Format(": the gyroscope turns %.3g times as fast as the board in %s",
+                            speeds->scale, camera.name.c_str()),
+          "check the gyroscope's unit and range, and the camera's intrinsics");
+    }
+    if (std::abs(speeds->time_offset_s) > kMaxOffset) {
+      findings->Warn(
+          Format("the clock of %s is %.2f s %s that of %s", imu_name.c_str(),
+                 std::abs(speeds->time_offset_s),
+                 speeds->time_offset_s > 0.0 ? "ahead of" : "behind", camera.name.c_str()),
+          Format("offsets of up to 1 s are estimated; beyond, add %.2f s to the stamps of "
+                 "%s",
+                 -speeds->time_offset_s, imu_name.c_str()));
+    }
+  } else if (speeds->correlation < kNoCorrelation) {
+    findings->Warn(Format("%s and %s do not turn at the same times (correlation %.2f at best)",
+                          imu_name.c_str(), camera.name.c_str(), speeds->correlation),
+                   "check that both are on one rigid body, that the board stands still, and that "
+                   "their clocks are less than 3 s apart");
+  }
+}
+
+void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, Findings* findings) {
+  const std::string& name = imu.recording.name;
+  const StreamDefects gyro = FindDefects(imu.recording.stream.gyro);
+  const StreamDefects accel = FindDefects(imu.recording.stream.accel);
+  const ImuStream stream = Mended(imu.recording.stream);
+  CheckSamples(name + " gyroscope", gyro, "rad/s", findings);
+  CheckSamples(name + " accelerometer", accel, "m/s^2", findings);
+  if (stream.gyro.size() < 2 || stream.accel.size() < 2) {
+    findings->Fail(name + " has no samples that can be used", "record the IMU again");
+    return;
+  }
+  if (imu.noise) {
+    CheckRate(name + " gyroscope", gyro, imu.noise->rate_hz, findings);
+    CheckRate(name + " accelerometer", accel, imu.noise->rate_hz, findings);
+  }
+  const bool columns_are_right = CheckSizes(name, stream, findings);
+  if (camera == nullptr || camera->views.size() < 2) return;
+  const Span views{camera->views.front().stamp, camera->views.back().stamp};
+  for (const auto& [sensor, samples] :
+       {std::pair(" gyroscope", &stream.gyro), std::pair(" accelerometer", &stream.accel)}) {
+    CheckOverlap(camera->name, views, name + sensor, SpanOf(*samples), findings);
+  }
+  if (columns_are_right) CheckSpeeds(*camera, name, stream.gyro, findings);
+}
+
+}  // namespace
+
+std::vector<Finding> CheckStreams(const std::vector<CheckedCamera>& cameras,
+                                  const std::vector<CheckedImu>& imus) {
+  std::vector<Finding> list;
+  Findings findings(&list);
+  for (const CheckedCamera& camera : cameras) {
+    if (camera.views.empty()) {
+      findings.Fail(camera.name + " never saw the board",
+                    "check --target and the light, and hold the board into the image");
+    } else if (camera.views.size() < kMinViews) {
+      findings.Fail(camera.name + Format(" saw the board in %zu images only, %zu are needed",
+                                         camera.views.size(), kMinViews),
+                    "record 30 s at 10 Hz or more, with the board in the image");
+    }
+  }
+  for (const CheckedImu& imu : imus) {
+    CheckImu(imu, cameras.empty() ? nullptr : &cameras.front(), &findings);
+  }
+  return list;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "calibrato/base/rng.h"
+#include "calibrato/geometry/rigid3.h"
+#include "calibrato/rendering/board_pattern.h"
+#include "calibrato/sensors/camera_chain.h"
+#include "calibrato/sensors/image.h"
+
+namespace calibrato {
+
+/// What surrounds the board and how it is lit. Grey levels are linear in light, 255 is a full
+/// pixel.
+struct Scene {
+  double black = 25.0;        ///< Ink [grey levels] >= 0.
+  double white = 225.0;       ///< Paper [grey levels] >= 0.
+  double background = 110.0;  ///< All around the sheet, and where the lens sees nothing.
+  /// Relative change of brightness from the image's middle to its right and to its lower edge.
+  Eigen::Vector2d lighting_gradient = Eigen::Vector2d::Zero();
+  /// Relative loss of brightness from the image's middle to its corners, as the square of the
+  /// distance: 0 to 1.
+  double vignetting = 0.0;
+  /// Standard deviation of the lens's point spread function, a round Gaussian [px] >= 0.
+  double blur_px = 0.0;
+};
+
+/// The light on each pixel, before noise and rounding.
+struct Exposure {
+  Resolution resolution;
+  std::vector<float> pixels;  ///< width * height [grey levels], row by row.
+};
+
+/// The image of a board through any lens, so exact that detectors can be judged by it: corner k is
+/// at camera.model.Project(T_c_g * BoardPoints(board).col(k)).
+///
+/// Each pixel is the mean of the scene over the pixel's area. It is computed from the areas that
+/// the outlines of everything black cut out of each pixel, in closed form, the outlines being
+/// within 1e-4 px of where the lens puts them; so it is within 1e-4 of the contrast per side that
+/// crosses the pixel. Blur is a Gaussian, on top of the pixel's area, within 5e-3 of the contrast,
+/// symmetric about every pixel and every edge, so that it moves none.
+///
+/// All models serve, also where they see behind themselves. Parts outside the model's domain are
+/// not seen. From behind there is no board, only background.
+/// @param pattern  PatternOf(board), made once for many images.
+/// @param T_c_g  Board to camera.
+[[nodiscard]] Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera,
+                                   const Rigid3& T_c_g, const Scene& scene);
+
+/// A sensor's noise: variance = read_noise^2 + shot_noise * (grey level).
+struct SensorNoise {
+  double read_noise = 0.0;  ///< Standard deviation in the dark [grey levels] >= 0.
+  double shot_noise = 0.0;  ///< Variance per grey level [grey levels] >= 0; about 255 / full well.
+};
+
+/// Rounds to the nearest of 0 .. 255.
+[[nodiscard]] GreyImage Digitised(const Exposure& exposure);
+/// ... after noise, drawn for every pixel in its order.
+[[nodiscard]] GreyImage Digitised(const Exposure& exposure, const SensorNoise& noise, Rng& rng);
+
+}  // namespace calibrato
