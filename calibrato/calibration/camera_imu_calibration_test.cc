@@ -126,7 +126,7 @@ TEST(CalibrateCameraImu, FinerKnotsChangeNothingButWhereTheyWereTooCoarse) {
   const auto chosen = CalibrateCameraImu(problem, options).change_with_finer_knots;
   ASSERT_TRUE(chosen.has_value());
   EXPECT_LT(*chosen, 0.2);
-  options.knot_spacing_s = 0.5;
+  options.knot_spacing_s = 0.4;
   const auto coarse = CalibrateCameraImu(problem, options).change_with_finer_knots;
   ASSERT_TRUE(coarse.has_value());
   EXPECT_GT(*coarse, 1.0);

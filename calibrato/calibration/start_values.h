@@ -23,7 +23,8 @@ struct StartValues {
 ///    board pose from the rays of each (plane_pose.h), and the reprojection error of it.
 /// 2. The best of each shape is adjusted to these views, all parameters free, with a loss that
 ///    forgives outliers.
-/// 3. The pose of every view with the one that ends lowest. For the models of which a calibration can
+/// 3. The pose of every view with the one that ends lowest. For the models of which a calibration
+/// can
 ///    have minima far apart it is adjusted to all views before, its twins (lens_twin.h) likewise,
 ///    and the lowest is taken.
 /// Parameters given in `known` start with that value, and those in `fixed` keep it.

@@ -65,9 +65,8 @@ testing::AssertionResult Says(const std::string& drawn, const std::string& words
 }
 
 TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
-  const std::string drawn =
-      Draw({CameraDocumentForTest(), CameraImuDocumentForTest(), LearnDocumentForTest(),
-            Table1DocumentForTest()});
+  const std::string drawn = Draw({CameraDocumentForTest(), CameraImuDocumentForTest(),
+                                  LearnDocumentForTest(), Table1DocumentForTest()});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "plot-failed"));
   EXPECT_FALSE(Says(drawn, "class=\"empty\""));
