@@ -18,4 +18,7 @@ if(CALIBRATO_SANITIZE)
   add_compile_options(-fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=address,undefined)
   add_compile_definitions(EIGEN_INITIALIZE_MATRICES_BY_NAN)
+  # The checks that are compiled in hide from GCC that a std::function is initialised.
+  target_compile_options(calibrato_options INTERFACE
+    $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()

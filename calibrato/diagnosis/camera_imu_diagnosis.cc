@@ -33,6 +33,7 @@ constexpr double kLargeChange = 0.5;    // With finer knots, in sigmas.
 constexpr double kHardlyTurned = 0.05;  // [rad/s]
 constexpr double kManyOutside = 0.05;   // Of all measurements; a few always are.
 constexpr int kNumKnowledge = 16;
+constexpr int kNumParts = 4;  // Whose scatter is looked at.
 constexpr size_t kNamesToList = 3;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
@@ -264,6 +265,44 @@ void JudgeResiduals(const CameraImuResidualSummary& residuals, std::vector<Findi
   }
 }
 
+void AddScatterFinding(const CameraImuScatter& scatter, std::vector<Finding>* findings) {
+  if (scatter.sigma_scale() == 1.0) return;
+  findings->push_back(
+      {Severity::kInfo,
+       Format("%d parts of the recording, each calibrated alone, lie %.1f times as far apart as "
+              "independent errors would put them; all sigmas were multiplied by that",
+              scatter.num_parts, scatter.sigma_scale()),
+       "look for errors that last: cameras' intrinsics of another day, a board that is bent or "
+       "moved, a camera that is loose, a vibrating or cheap IMU"});
+}
+
+// Where the IMUs are not as their model has them, and the result depends on it.
+void JudgeImuModel(const ImuModelComparison& models, bool is_simple,
+                   CameraImuDiagnosis* diagnosis) {
+  if (!is_simple || !models.significance.is_significant()) return;
+  const size_t num_parameters = diagnosis->parameters.size() / models.change.size();
+  std::string changes;
+  for (size_t n = 0; n < models.change.size(); ++n) {
+    for (size_t k = 0; k < 6; ++k) {
+      ParameterVerdict& parameter = diagnosis->parameters[n * num_parameters + k];
+      const double change = models.change[n](static_cast<Eigen::Index>(k));
+      if (!(std::abs(change) > kDisagreement * parameter.sigma)) continue;
+      parameter.verdict = std::max(parameter.verdict, Verdict::kWarn);
+      const Kind& kind = k < 3 ? kRotation : kTranslation;
+      changes += (changes.empty() ? "" : ", ") +
+                 Format("%s by %.2g %s", parameter.name.c_str(), change / kind.one_unit, kind.unit);
+    }
+  }
+  if (changes.empty()) return;
+  diagnosis->findings.push_back(
+      {Severity::kWarn,
+       Format("the IMU has scale errors or misaligned axes (squared residuals would fall by %.0f, "
+              "where %.0f is chance), which moves the result: ",
+              models.significance.statistic, models.significance.degrees) +
+           changes,
+       "give --imu-model scale-misalignment"});
+}
+
 double NumMeasurements(const CameraImuProblem& problem) {
   size_t number = 0;
   for (const CameraImuCamera& camera : problem.cameras) number += camera.views.size();
@@ -295,7 +334,12 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
          "recording found"});
   }
   const CameraImuLayout layout(problem, state.T_g_i.order());
-  const std::vector<double> sigmas = SigmasOf(calibration.information);
+  if (calibration.termination == Termination::kConverged) {
+    diagnosis.scatter = ScatterOfParts(problem, calibration, kNumParts);
+    if (diagnosis.scatter) AddScatterFinding(*diagnosis.scatter, &diagnosis.findings);
+  }
+  std::vector<double> sigmas = SigmasOf(calibration.information);
+  for (double& sigma : sigmas) sigma *= diagnosis.sigma_scale();
   for (size_t n = 0; n < problem.cameras.size(); ++n) {
     JudgeCamera(problem, state, layout, sigmas, n, &diagnosis);
   }
@@ -307,19 +351,23 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
          "estimate less, or turn the rig about all axes and shake it along all of them"});
   }
   if (calibration.termination == Termination::kConverged) {
-    diagnosis.split = CheckSplit(problem, calibration);
+    diagnosis.split = CheckSplit(problem, calibration, diagnosis.sigma_scale());
     JudgeSplit(&diagnosis);
+    diagnosis.imu_models = CompareImuModels(problem, calibration, diagnosis.sigma_scale());
+    const bool is_simple = problem.imus.front().model == ImuModelKind::kCalibrated;
+    if (diagnosis.imu_models) JudgeImuModel(*diagnosis.imu_models, is_simple, &diagnosis);
   }
   diagnosis.residuals = SummariseResiduals(problem, calibration);
   JudgeResiduals(*diagnosis.residuals, &diagnosis.findings);
   AddNoiseFindings(problem, calibration.weights, &diagnosis.findings);
-  if (calibration.change_with_finer_knots > kLargeChange) {
+  if (calibration.change_with_finer_knots > kLargeChange * diagnosis.sigma_scale()) {
     diagnosis.findings.push_back(
         {Severity::kInfo,
          Format(
              "the motion is hardly followed by a trajectory with knots every %.3g ms: with knots "
              "twice as dense the result moves by %.1f sigmas",
-             1e3 * calibration.knot_spacing_s, *calibration.change_with_finer_knots),
+             1e3 * calibration.knot_spacing_s,
+             *calibration.change_with_finer_knots / diagnosis.sigma_scale()),
          "move less abruptly: knocks and vibration are faster than the IMU's samples can show"});
   }
   if (calibration.num_outside > kManyOutside * NumMeasurements(problem)) {
@@ -330,7 +378,8 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
                 calibration.num_outside),
          ""});
   }
-  diagnosis.knowledge = KnowledgeOverTime(problem, calibration, kNumKnowledge);
+  diagnosis.knowledge =
+      KnowledgeOverTime(problem, calibration, kNumKnowledge, diagnosis.sigma_scale());
 
   if (VerdictOf(diagnosis.findings) == Verdict::kFail) {
     for (ParameterVerdict& parameter : diagnosis.parameters) parameter.verdict = Verdict::kFail;

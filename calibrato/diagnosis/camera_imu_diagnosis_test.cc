@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrato/base/full_sample_for_test.h"
 #include "calibrato/calibration/synthetic_camera_imu_for_test.h"
 #include "calibrato/diagnosis/camera_imu_document.h"
 #include "calibrato/diagnosis/camera_imu_plots.h"
@@ -118,6 +119,78 @@ TEST(DiagnoseCameraImu, SeesThatTheCameraMovedOnTheRigHalfWayThrough) {
   }
   const CameraImuReport report = ReportOn(problem);
   EXPECT_TRUE(Says(report, Severity::kWarn, "disagree: cam0.pos_x by")) << CameraImuText(report);
+}
+
+// The lens that the estimator is given is another one than that of the images: errors that last,
+// and differ with where in the image the board is.
+TEST(DiagnoseCameraImu, WidensSigmasWhereErrorsLast) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 20.0;
+  Rng rng(1);
+  CameraImuProblem problem = truth.Problem(rng);
+  Eigen::VectorXd parameters = truth.model.parameters();
+  parameters(4) += 0.01;
+  problem.cameras[0].model = CameraModel("pinhole-radtan", parameters);
+  const CameraImuReport report = ReportOn(problem);
+  ASSERT_TRUE(report.diagnosis.scatter.has_value());
+  const double scale = report.diagnosis.sigma_scale();
+  EXPECT_GT(scale, 1.5);
+  EXPECT_TRUE(Says(report, Severity::kInfo, "all sigmas were multiplied by that"));
+  const std::vector<double> as_if_independent = SigmasOf(report.calibration.information);
+  EXPECT_DOUBLE_EQ(report.diagnosis.parameters[3].sigma, scale * as_if_independent[3]);
+  const Value result = CameraImuResult(report);
+  EXPECT_DOUBLE_EQ(result.At("covariance").At("matrix").elements()[3].AsDoubles()[3],
+                   std::pow(scale * as_if_independent[3], 2));
+}
+
+TEST(ScatterOfParts, IsChanceWhereErrorsAreIndependent) {
+  const int n = FullSample() ? 200 : 8;
+  double ratio = 0.0;
+  int num_scaled = 0;
+  for (int seed = 0; seed < n; ++seed) {
+    SyntheticCameraImu truth;
+    truth.duration_s = 8.0;
+    Rng rng(static_cast<uint64_t>(seed));
+    const CameraImuProblem problem = truth.Problem(rng);
+    const auto scatter = ScatterOfParts(problem, CalibrateCameraImu(problem), 4);
+    ASSERT_TRUE(scatter.has_value());
+    ratio += scatter->ratio / n;
+    num_scaled += scatter->sigma_scale() > 1.0 ? 1 : 0;
+  }
+  // Chi-square with 21 degrees of freedom, over 21.
+  EXPECT_NEAR(ratio, 1.0, 3.5 * std::sqrt(2.0 / (21.0 * n)));
+  EXPECT_LE(num_scaled, FullSample() ? 5 : 1);
+}
+
+// The test promises what a solve with the further parameters finds.
+TEST(CompareImuModels, FindsMisalignedAxesFromEitherModel) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 20.0;
+  truth.intrinsics.R_gyro_i = ExpSo3({0.004, -0.003, 0.005});
+  truth.intrinsics.M_accel(2, 2) = 1.003;
+  Rng rng(3);
+  CameraImuProblem problem = truth.Problem(rng);
+  const CameraImuReport simple = ReportOn(problem);
+  problem.imus[0].model = ImuModelKind::kScaleMisalignment;
+  const CameraImuReport rich = ReportOn(problem);
+  ASSERT_TRUE(simple.diagnosis.imu_models.has_value());
+  ASSERT_TRUE(rich.diagnosis.imu_models.has_value());
+  for (const CameraImuReport* report : {&simple, &rich}) {
+    const ImuModelComparison& models = *report->diagnosis.imu_models;
+    EXPECT_EQ(models.significance.degrees, 24.0);
+    EXPECT_TRUE(models.significance.is_significant());
+  }
+  EXPECT_TRUE(Says(simple, Severity::kWarn, "give --imu-model scale-misalignment"));
+  EXPECT_FALSE(Says(rich, Severity::kWarn, "--imu-model"));
+  const Eigen::Vector<double, 6> change = rich.calibration.state->cameras[0].T_c_i.DifferenceTo(
+      simple.calibration.state->cameras[0].T_c_i);
+  EXPECT_LT((simple.diagnosis.imu_models->change[0] - change).norm(), 0.2 * change.norm());
+}
+
+TEST(CompareImuModels, AreSilentAboutAPerfectImu) {
+  const CameraImuReport report = ReportOn(SyntheticCameraImu());
+  ASSERT_TRUE(report.diagnosis.imu_models.has_value());
+  EXPECT_FALSE(report.diagnosis.imu_models->significance.is_significant());
 }
 
 TEST(CameraImuResult, HasTheKeysOfTheFormats) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "calibrato/geometry/so3.h"
 #include "calibrato/sensors/camera_chain.h"
@@ -119,13 +120,38 @@ Value ImuValue(const CameraImuReport& report, size_t n) {
   return value;
 }
 
-Value CovarianceValue(const CameraImuInformation& information) {
+Value ScatterValue(const std::optional<CameraImuScatter>& scatter) {
+  if (!scatter) return {};
+  Value value = Value::Object();
+  value.Set("num_parts", scatter->num_parts)
+      .Set("ratio", scatter->ratio)
+      .Set("probability", scatter->probability)
+      .Set("sigma_scale", scatter->sigma_scale());
+  return value;
+}
+
+Value ImuModelsValue(const std::optional<ImuModelComparison>& models) {
+  if (!models) return {};
+  Value change = Value::Array();
+  for (const auto& of_camera : models->change) change.Append(Value::Numbers(of_camera));
+  Value value = Value::Object();
+  value.Set("simple", ImuModelName(ImuModelKind::kCalibrated))
+      .Set("richer", ImuModelName(ImuModelKind::kScaleMisalignment))
+      .Set("squared_residuals_fall", models->significance.statistic)
+      .Set("degrees", models->significance.degrees)
+      .Set("probability", models->significance.probability)
+      .Set("change_rad_m", std::move(change));
+  return value;
+}
+
+Value CovarianceValue(const CameraImuInformation& information, double sigma_scale) {
   if (information.covariance.size() == 0) return {};
   Value names = Value::Array();
   for (const std::string& name : information.names) names.Append(name);
   Value matrix = Value::Array();
   for (Eigen::Index row = 0; row < information.covariance.rows(); ++row) {
-    matrix.Append(Value::Numbers(Eigen::VectorXd(information.covariance.row(row))));
+    matrix.Append(Value::Numbers(
+        Eigen::VectorXd(sigma_scale * sigma_scale * information.covariance.row(row))));
   }
   Value value = Value::Object();
   value.Set("names", std::move(names)).Set("matrix", std::move(matrix));
@@ -238,7 +264,9 @@ Value CameraImuResult(const CameraImuReport& report) {
                                           ? Value(*calibration.change_with_finer_knots)
                                           : Value())
       .Set("num_iterations", calibration.num_iterations)
-      .Set("covariance", CovarianceValue(calibration.information))
+      .Set("scatter", ScatterValue(report.diagnosis.scatter))
+      .Set("imu_models", ImuModelsValue(report.diagnosis.imu_models))
+      .Set("covariance", CovarianceValue(calibration.information, report.diagnosis.sigma_scale()))
       .Set("information", InformationValue(calibration.information))
       .Set("residuals", ResidualsValue(report));
   return result;

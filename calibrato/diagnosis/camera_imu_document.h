@@ -36,6 +36,11 @@ struct CameraImuReport {
 ///                "T_i_imu": 4x4, "time_offset_s"}],
 ///      "gravity_g": [3], "knot_spacing_s", "num_iterations",
 ///      "change_with_finer_knots": in sigmas, null if it was not looked for,
+///      "scatter": {"num_parts", "ratio", "probability", "sigma_scale"}, null if a part does not
+///                 determine the result; all sigmas and the covariance are scaled by sigma_scale,
+///                 the information is not,
+///      "imu_models": {"simple", "richer", "squared_residuals_fall", "degrees", "probability",
+///                     "change_rad_m": [[6] of each camera]}, null if the motion can't tell,
 ///      "covariance": {"names", "matrix"},
 ///      "information": {"a_optimality", "d_optimality", "e_optimality", "eigenvalues",
 ///                      "a_optimality_conditional"},

@@ -1,18 +1,24 @@
 #include "calibrato/diagnosis/camera_imu_parts.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
 #include "calibrato/base/parallel.h"
 #include "calibrato/calibration/camera_imu_layout.h"
+#include "calibrato/calibration/chi_square.h"
 
 namespace calibrato {
 namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -53,7 +59,55 @@ CameraImuState FirstBlocks(const CameraImuState& state, int num_blocks) {
   return first;
 }
 
+// Spans of equal length, each calibrated alone.
+std::optional<std::vector<CameraImuCalibration>> CalibrateParts(
+    const CameraImuProblem& problem, const CameraImuCalibration& calibration, int num_parts) {
+  if (!calibration.state) return std::nullopt;
+  const CameraImuState& state = *calibration.state;
+  const CameraImuProblem known = WithNoiseAsFound(problem, calibration);
+  CameraImuOptions options;
+  options.spline_order = state.T_g_i.order();
+  options.knot_spacing_s = calibration.knot_spacing_s;
+  const int64_t duration = (EndOf(state) - state.start).nanoseconds();
+  const auto edge = [&](int k) {
+    return state.start + Duration::FromNanoseconds(duration / num_parts * k);
+  };
+  std::vector<CameraImuCalibration> parts;
+  for (int k = 0; k < num_parts; ++k) {
+    const CameraImuProblem part = PartOf(known, edge(k), edge(k + 1));
+    if (!HasAllSensors(part)) return std::nullopt;
+    parts.push_back(CalibrateCameraImu(part, options));
+    if (parts.back().termination != Termination::kConverged) return std::nullopt;
+  }
+  return parts;
+}
+
+// Rotation and translation of a camera's T_c_i, and its time offset unless that is held.
+VectorXd DifferenceOf(const CameraImuCalibration& to, const CameraImuCalibration& from,
+                      const CameraImuProblem& problem, size_t camera) {
+  const CameraCalibrationState& of_to = to.state->cameras[camera];
+  const CameraCalibrationState& of_from = from.state->cameras[camera];
+  VectorXd difference(7);
+  difference << of_to.T_c_i.DifferenceTo(of_from.T_c_i),
+      of_to.time_offset_s - of_from.time_offset_s;
+  return difference.head(problem.estimate_time_offsets ? 7 : 6);
+}
+
+MatrixXd CovarianceOf(const CameraImuCalibration& calibration, const CameraImuProblem& problem,
+                      size_t camera) {
+  const CameraImuLayout layout(problem, calibration.state->T_g_i.order());
+  const CameraImuLayout::Camera& columns = layout.cameras[camera];
+  std::vector<Eigen::Index> used;
+  for (int k = 0; k < 6; ++k) used.push_back(columns.pose + k);
+  if (columns.time_offset >= 0) used.push_back(columns.time_offset);
+  return calibration.information.covariance(used, used);
+}
+
 }  // namespace
+
+double CameraImuScatter::sigma_scale() const {
+  return probability < kSignificance ? std::sqrt(ratio) : 1.0;
+}
 
 ImuNoise NoiseAsFound(ImuNoise noise, const CameraImuWeights::Imu& weights) {
   noise.gyro_noise_density = weights.gyro_stddev / std::sqrt(noise.rate_hz);
@@ -74,45 +128,59 @@ CameraImuProblem PartOf(const CameraImuProblem& problem, Time begin, Time end) {
   return part;
 }
 
-std::optional<CameraImuSplit> CheckSplit(const CameraImuProblem& problem,
-                                         const CameraImuCalibration& calibration) {
-  if (!calibration.state) return std::nullopt;
-  const CameraImuState& state = *calibration.state;
-  const CameraImuProblem known = WithNoiseAsFound(problem, calibration);
-  const Time begin = state.start;
-  const Time end = EndOf(state);
-  const Time middle = begin + Duration::FromNanoseconds((end - begin).nanoseconds() / 2);
-  CameraImuOptions options;
-  options.spline_order = state.T_g_i.order();
-  options.knot_spacing_s = calibration.knot_spacing_s;
-
-  const std::array<std::pair<Time, Time>, 2> spans = {{{begin, middle}, {middle, end}}};
-  std::array<CameraImuCalibration, 2> halves;
-  for (size_t h = 0; h < 2; ++h) {
-    const CameraImuProblem half = PartOf(known, spans[h].first, spans[h].second);
-    if (!HasAllSensors(half)) return std::nullopt;
-    halves[h] = CalibrateCameraImu(half, options);
-    if (halves[h].termination != Termination::kConverged) return std::nullopt;
+std::optional<CameraImuScatter> ScatterOfParts(const CameraImuProblem& problem,
+                                               const CameraImuCalibration& calibration,
+                                               int num_parts) {
+  assert(num_parts >= 2);
+  const auto parts = CalibrateParts(problem, calibration, num_parts);
+  if (!parts) return std::nullopt;
+  CameraImuScatter scatter;
+  scatter.num_parts = num_parts;
+  scatter.ratio = 0.0;
+  for (size_t n = 0; n < problem.cameras.size(); ++n) {
+    std::vector<MatrixXd> weights;
+    std::vector<VectorXd> differences;
+    MatrixXd sum_of_weights;
+    VectorXd weighted_sum;
+    for (const CameraImuCalibration& part : *parts) {
+      differences.push_back(DifferenceOf(part, calibration, problem, n));
+      weights.push_back(CovarianceOf(part, problem, n).inverse());
+      if (weights.size() == 1) {
+        sum_of_weights = MatrixXd::Zero(weights[0].rows(), weights[0].cols());
+        weighted_sum = VectorXd::Zero(weights[0].rows());
+      }
+      sum_of_weights += weights.back();
+      weighted_sum += weights.back() * differences.back();
+    }
+    const VectorXd mean = sum_of_weights.ldlt().solve(weighted_sum);
+    double squared = 0.0;
+    for (size_t k = 0; k < parts->size(); ++k) {
+      squared += (differences[k] - mean).dot(weights[k] * (differences[k] - mean));
+    }
+    const auto degrees = static_cast<double>((num_parts - 1) * mean.size());
+    scatter.ratio += squared / degrees / static_cast<double>(problem.cameras.size());
+    scatter.probability = std::min(scatter.probability, ChiSquareTail(squared, degrees));
   }
+  return scatter;
+}
 
-  const CameraImuLayout layout(problem, state.T_g_i.order());
+std::optional<CameraImuSplit> CheckSplit(const CameraImuProblem& problem,
+                                         const CameraImuCalibration& calibration,
+                                         double sigma_scale) {
+  const auto halves = CalibrateParts(problem, calibration, 2);
+  if (!halves) return std::nullopt;
   CameraImuSplit split;
   for (size_t n = 0; n < problem.cameras.size(); ++n) {
-    const CameraCalibrationState& first = halves[0].state->cameras[n];
-    const CameraCalibrationState& second = halves[1].state->cameras[n];
+    const VectorXd difference = DifferenceOf((*halves)[1], (*halves)[0], problem, n);
+    MatrixXd covariance =
+        CovarianceOf((*halves)[0], problem, n) + CovarianceOf((*halves)[1], problem, n);
+    covariance *= sigma_scale * sigma_scale;
     CameraImuSplit::Camera camera;
-    camera.difference << second.T_c_i.DifferenceTo(first.T_c_i),
-        second.time_offset_s - first.time_offset_s;
-    Eigen::Matrix<double, 7, 7> covariance = Eigen::Matrix<double, 7, 7>::Zero();
-    std::vector<Eigen::Index> columns;
-    for (int k = 0; k < 6; ++k) columns.push_back(layout.cameras[n].pose + k);
-    if (layout.cameras[n].time_offset >= 0) columns.push_back(layout.cameras[n].time_offset);
-    const auto size = static_cast<Eigen::Index>(columns.size());
-    for (const CameraImuCalibration& half : halves) {
-      covariance.topLeftCorner(size, size) += half.information.covariance(columns, columns);
-    }
-    camera.sigma = covariance.diagonal().cwiseSqrt();
-    camera.significance = SignificanceOf(camera.difference, covariance);
+    camera.difference.setZero();
+    camera.sigma.setZero();
+    camera.difference.head(difference.size()) = difference;
+    camera.sigma.head(difference.size()) = covariance.diagonal().cwiseSqrt();
+    camera.significance = SignificanceOf(difference, covariance);
     split.cameras.push_back(camera);
   }
   return split;
@@ -120,7 +188,7 @@ std::optional<CameraImuSplit> CheckSplit(const CameraImuProblem& problem,
 
 std::vector<CameraImuKnowledge> KnowledgeOverTime(const CameraImuProblem& problem,
                                                   const CameraImuCalibration& calibration,
-                                                  int max_parts) {
+                                                  int max_parts, double sigma_scale) {
   assert(calibration.state.has_value());
   const CameraImuLayout layout(problem, calibration.state->T_g_i.order());
   const CameraImuLayout::Camera& columns = layout.cameras.front();
@@ -137,7 +205,7 @@ std::vector<CameraImuKnowledge> KnowledgeOverTime(const CameraImuProblem& proble
     const auto sum = [&](int first, int size) {
       double squared = 0.0;
       for (int i = first; i < first + size; ++i) squared += sigmas[size_t(i)] * sigmas[size_t(i)];
-      return std::sqrt(squared);
+      return sigma_scale * std::sqrt(squared);
     };
     knowledge.rotation_sigma_rad = sum(columns.pose, 3);
     knowledge.translation_sigma_m = sum(columns.pose + 3, 3);
