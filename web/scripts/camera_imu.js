@@ -192,7 +192,7 @@ function residualsCard(title, unit, sensor, duration) {
   const build = () => {
     if (list(sensor?.residual).length !== 3) return "No residuals were handed over.";
     const band = 3 * sensor.stddev;
-    return threeAxes(unit, duration, (i) => [
+    const {data, layout} = threeAxes(unit, duration, (i) => [
       {name: "predicted - measured", ...zigzag(sensor.residual[i]),
        line: {color: kBlue, width: 1},
        hovertemplate: "%{x:.2f} s: %{y:.3g}<extra></extra>"},
@@ -200,9 +200,15 @@ function residualsCard(title, unit, sensor, duration) {
        y: [band, band, null, -band, -band], line: {color: kVermilion, width: 1.5, dash: "dash"},
        hoverinfo: "skip"},
     ]);
+    // A spike that was left out would make a line of all the others.
+    for (const yaxis of ["yaxis", "yaxis2", "yaxis3"]) {
+      layout[yaxis].range = [-3 * band, 3 * band];
+    }
+    return {data, layout};
   };
   return wide(card(title, "Within the dashed lines but for a few in a thousand, and without a " +
-                              "pattern, if the noise is as stated.",
+                              "pattern, if the noise is as stated. What is beyond nine sigmas is " +
+                              "cut off; a double click shows it.",
                    plot(build, {height: "440px"})));
 }
 
