@@ -20,7 +20,7 @@ function(calibrato_add_room name)
   if(CALIBRATO_TESTS AND ROOM_TESTS)
     add_executable(${name}_test ${ROOM_TESTS})
     target_link_libraries(${name}_test PRIVATE calibrato_${name} GTest::gmock GTest::gtest_main)
-    calibrato_precompile(${name}_test calibrato_precompiled_for_tests)
+    calibrato_build_fast(${name}_test)
     gtest_discover_tests(${name}_test DISCOVERY_MODE PRE_TEST
                          WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
                          PROPERTIES LABELS "${name}" TIMEOUT 1200)

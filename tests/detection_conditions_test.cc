@@ -129,6 +129,12 @@ TEST(DetectionConditions, CountsMarkersOfAnotherDictionary) {
 TEST(DetectionConditions, NoticesRowsAndColumnsSwapped) {
   const AprilGrid swapped{5, 4, 0.088, 0.3};
   EXPECT_EQ(SearchForBoard(ImageOf(kAprilGrid), swapped).rejected.images_with_other_layout, 1);
+  // Two rows too few in the target: the numbers of those that it has are right nevertheless.
+  Charuco shorter = kCharuco;
+  shorter.rows = 4;
+  const BoardSearch search = SearchForBoard(ImageOf(kCharuco), shorter);
+  EXPECT_FALSE(search.view.has_value());
+  EXPECT_EQ(search.rejected.images_with_other_layout, 1);
   EXPECT_THAT(MessageFor(ImageOf(kAprilGrid), swapped), HasSubstr("tagRows: 4 and tagCols: 5"));
   const Board circles = CircleGrid{11, 4, 0.03, true};
   EXPECT_THAT(MessageFor(ImageOf(circles), CircleGrid{4, 11, 0.03, true}),

@@ -38,6 +38,7 @@ constexpr double kLossScale = 3.0;
 // A vector of three has the tail of a corner's five sigmas from here on.
 constexpr double kSampleOutlierSigmas = 5.3;
 constexpr double kMedianOfChiSquare3 = 2.366;
+constexpr double kLinearTurn = 0.1;  // [rad]
 
 void CheckProblem(const CameraImuProblem& problem) {
   const auto fail = [](const std::string& what, const std::string& remedy) {
@@ -59,14 +60,30 @@ void CheckProblem(const CameraImuProblem& problem) {
   }
 }
 
+// Of a stream, by the median of its periods, which gaps leave alone [Hz]. Stamps jitter and data
+// sheets round: what is within a hundredth of the stated rate is that.
+double RateOf(const std::vector<VectorSample>& samples, double stated_hz) {
+  std::vector<double> periods_s;
+  for (size_t k = 1; k < samples.size(); ++k) {
+    periods_s.push_back((samples[k].stamp - samples[k - 1].stamp).seconds());
+  }
+  if (periods_s.empty()) return stated_hz;
+  const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
+  std::nth_element(periods_s.begin(), middle, periods_s.end());
+  const double rate_hz = *middle > 0.0 ? 1.0 / *middle : stated_hz;
+  return std::abs(rate_hz - stated_hz) <= 0.01 * stated_hz ? stated_hz : rate_hz;
+}
+
 CameraImuWeights WeightsOf(const CameraImuProblem& problem, double corner_noise_px) {
   CameraImuWeights weights;
   weights.corner_noise_px = corner_noise_px;
   for (const CameraImuImu& imu : problem.imus) {
-    const double root_rate = std::sqrt(imu.noise.rate_hz);
-    weights.imus.push_back({imu.noise.gyro_noise_density * root_rate,
-                            imu.noise.accel_noise_density * root_rate, imu.noise.gyro_random_walk,
-                            imu.noise.accel_random_walk});
+    const double gyro_hz = RateOf(imu.stream.gyro, imu.noise.rate_hz);
+    const double accel_hz = RateOf(imu.stream.accel, imu.noise.rate_hz);
+    weights.imus.push_back({imu.noise.gyro_noise_density * std::sqrt(gyro_hz),
+                            imu.noise.accel_noise_density * std::sqrt(accel_hz),
+                            imu.noise.gyro_random_walk, imu.noise.accel_random_walk, gyro_hz,
+                            accel_hz});
   }
   return weights;
 }
@@ -87,6 +104,17 @@ CameraImuInformation InformationOfBorder(const CameraImuLayout& layout,
   information.a_optimality_conditional =
       system.BorderBlock().block<6, 6>(pose, pose).inverse().trace();
   return information;
+}
+
+// Where some direction is not determined, or a rotation to no better than a turn over which the
+// normal equations of one state say little of those at the other end: a solve walks along it
+// without an end, or ends anywhere.
+bool IsUndetermined(const CameraImuInformation& information, const CameraImuLayout& layout) {
+  if (information.covariance.size() == 0) return true;
+  const VectorXd variance = information.covariance.diagonal();
+  return std::any_of(layout.cameras.begin(), layout.cameras.end(), [&](const auto& camera) {
+    return !(variance.segment<3>(camera.pose).maxCoeff() <= kLinearTurn * kLinearTurn);
+  });
 }
 
 // Levenberg-Marquardt on one set of measurements; it keeps the normal equations of where it is.
@@ -215,6 +243,24 @@ CameraImuSelection InliersAmong(const CameraImuResiduals& residuals,
   return inliers;
 }
 
+void LeaveOut(const CameraImuSuspects& suspects, CameraImuSelection* selection) {
+  for (size_t n = 0; n < suspects.views.size(); ++n) {
+    for (size_t v = 0; v < suspects.views[n].size(); ++v) {
+      std::vector<bool>& corners = selection->corners[n][v];
+      if (suspects.views[n][v]) corners.assign(corners.size(), false);
+    }
+  }
+  const auto leave_out = [](const std::vector<bool>& suspect, std::vector<bool>* selected) {
+    for (size_t k = 0; k < suspect.size(); ++k) {
+      if (suspect[k]) (*selected)[k] = false;
+    }
+  };
+  for (size_t n = 0; n < suspects.gyro.size(); ++n) {
+    leave_out(suspects.gyro[n], &selection->gyro[n]);
+    leave_out(suspects.accel[n], &selection->accel[n]);
+  }
+}
+
 int CountTrue(const std::vector<bool>& flags) {
   return static_cast<int>(std::count(flags.begin(), flags.end(), true));
 }
@@ -241,6 +287,16 @@ double ShareLost(const CameraImuSelection& before, const CameraImuSelection& aft
   return share;
 }
 
+// Whether a view that took part takes none.
+bool LosesViews(const CameraImuSelection& before, const CameraImuSelection& after) {
+  for (size_t n = 0; n < before.corners.size(); ++n) {
+    for (size_t v = 0; v < before.corners[n].size(); ++v) {
+      if (CountTrue(before.corners[n][v]) > 0 && CountTrue(after.corners[n][v]) == 0) return true;
+    }
+  }
+  return false;
+}
+
 // Kinds of measurements whose noise can be estimated: corners, then gyroscope and accelerometer of
 // each IMU.
 size_t NumNoiseKinds(const CameraImuWeights& weights) { return 1 + 2 * weights.imus.size(); }
@@ -265,7 +321,8 @@ SquaredErrors ErrorsOf(size_t kind, const CameraImuResiduals& residuals,
     const auto& of = kind % 2 == 1 ? residuals.gyro[imu] : residuals.accel[imu];
     const auto& selected = kind % 2 == 1 ? selection.gyro[imu] : selection.accel[imu];
     for (size_t k = 0; k < of.size(); ++k) {
-      if (!selected[k]) continue;
+      // An offset that still moved may have carried it beyond the trajectory's end.
+      if (!selected[k] || !of[k].allFinite()) continue;
       errors.sum += of[k].squaredNorm();
       errors.count += 3;
     }
@@ -276,6 +333,7 @@ SquaredErrors ErrorsOf(size_t kind, const CameraImuResiduals& residuals,
       const Eigen::Matrix2Xd& of_view = residuals.corners_px[n][v];
       for (Eigen::Index k = 0; k < of_view.cols(); ++k) {
         if (!selection.corners[n][v][static_cast<size_t>(k)]) continue;
+        if (!of_view.col(k).allFinite()) continue;
         errors.sum += of_view.col(k).squaredNorm();
         errors.count += 2;
       }
@@ -346,10 +404,7 @@ std::optional<double> ChangeWithFinerKnots(const CameraImuProblem& problem,
   options.check_knot_spacing = false;
   options.knot_spacing_s = 0.5 * result.knot_spacing_s;
   const CameraImuCalibration finer = CalibrateCameraImu(problem, options);
-  if (result.termination != Termination::kConverged ||
-      finer.termination != Termination::kConverged) {
-    return std::nullopt;
-  }
+  if (finer.termination != Termination::kConverged) return std::nullopt;
   const VectorXd change = CalibrationDifference(*finer.state, *result.state, layout);
   const VectorXd sigma = result.information.covariance.diagonal().cwiseSqrt();
   return change.cwiseQuotient(sigma).cwiseAbs().maxCoeff();
@@ -371,6 +426,12 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
   const CameraImuLayout layout(problem, options.spline_order);
   Solver solver(problem, layout, std::move(start->state));
   CameraImuSelection selection = SelectionOfFinite(ResidualsOf(problem, solver.state()));
+  bool has_suspects = false;
+  if (options.reject_outliers) {
+    const CameraImuSelection all = selection;
+    LeaveOut(start->suspects, &selection);
+    has_suspects = !(selection == all);
+  }
   CameraImuMeasurements measurements = MeasurementsOf(problem, solver.state(), selection);
   (void)solver.Solve(measurements, result.weights, 0.0, kNearlyConverged, options.max_iterations);
 
@@ -386,7 +447,9 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
       if (!problem.corner_noise_px) result.weights.corner_noise_px = RobustCornerNoise(residuals);
       inliers = InliersAmong(residuals, result.weights);
     }
-    const bool few = ShareLost(selection, inliers) <= kFewOutliers;
+    // What stood next to something that is off may have looked off as well, and is good without it.
+    const bool few = ShareLost(selection, inliers) <= kFewOutliers &&
+                     !LosesViews(selection, inliers) && !(round == 0 && has_suspects);
     selection = std::move(inliers);
     measurements = MeasurementsOf(problem, solver.state(), selection);
     (void)solver.Solve(measurements, result.weights, 0.0, kNearlyConverged, options.max_iterations);
@@ -404,9 +467,7 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
   result.num_iterations = solver.num_iterations();
   result.state = solver.state();
   result.information = InformationOfBorder(layout, solver.system());
-  if (result.information.covariance.size() == 0 && result.termination == Termination::kConverged) {
-    result.termination = Termination::kRankDeficient;
-  }
+  if (IsUndetermined(result.information, layout)) result.termination = Termination::kRankDeficient;
   result.residuals = ResidualsOf(problem, solver.state());
   const SquaredErrors inliers = ErrorsOf(0, result.residuals, selection);
   const SquaredErrors all = ErrorsOf(0, result.residuals, SelectionOfFinite(result.residuals));
@@ -415,7 +476,7 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
   result.reprojection_rms_all_px = std::sqrt(2.0 * all.sum / std::max(1, all.count));
   result.num_outside = CountOutside(problem, solver.state());
   result.inliers = std::move(selection);
-  if (options.check_knot_spacing) {
+  if (options.check_knot_spacing && result.termination == Termination::kConverged) {
     result.change_with_finer_knots = ChangeWithFinerKnots(problem, options, layout, result);
   }
   return result;
@@ -424,7 +485,7 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
 CameraImuInformation InformationAt(const CameraImuProblem& problem, const CameraImuState& state) {
   assert(problem.corner_noise_px.has_value());
   const CameraImuLayout layout(problem, state.T_g_i.order());
-  const CameraImuSelection selection = SelectionOfFinite(ResidualsOf(problem, state));
+  const CameraImuSelection selection = SelectionOnTrajectory(problem, state);
   ArrowheadSystem system(state.num_blocks(), layout.block_size, layout.border_size);
   const auto cost = Linearise(problem, state, layout, MeasurementsOf(problem, state, selection),
                               WeightsOf(problem, *problem.corner_noise_px), &system);

@@ -263,6 +263,76 @@ TEST(CalibrateCameraImu, EstimatesTheNoiseOfAllSensorsWhereAsked) {
   EXPECT_NEAR(result.weights.corner_noise_px / truth.corner_noise_px, 1.0, 0.02);
 }
 
+TEST(CalibrateCameraImu, FindsTheLineDelayOfARollingShutter) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 5.0;
+  truth.line_delay_s = 40e-6;
+  const int n = FullSample() ? 200 : 6;
+  double squared = 0.0;
+  double nees = 0.0;
+  for (int i = 0; i < n; ++i) {
+    Rng rng(static_cast<uint64_t>(14 + i));
+    CameraImuProblem problem = truth.Problem(rng);
+    if (i == 0) {
+      // As a global shutter's the images do not fit, and the result is off.
+      const CameraImuCalibration global = CalibrateCameraImu(problem, Spacing(0.07));
+      EXPECT_TRUE(global.termination != Termination::kConverged || Nees(global, truth) > 1e3);
+    }
+    problem.estimate_line_delays = true;
+    const CameraImuCalibration result = CalibrateCameraImu(problem, Spacing(0.07));
+    ASSERT_EQ(result.termination, Termination::kConverged);
+    const int column = CameraImuLayout(problem, 6).cameras[0].line_delay;
+    const double sigma = std::sqrt(result.information.covariance(column, column));
+    EXPECT_LT(sigma, 1e-6);
+    const double error = result.state->cameras[0].line_delay_s - truth.line_delay_s;
+    squared += error * error / (sigma * sigma);
+    nees += Nees(result, truth);
+    EXPECT_NEAR(result.weights.corner_noise_px, truth.corner_noise_px,
+                0.03 * truth.corner_noise_px);
+  }
+  EXPECT_NEAR(squared / n, 1.0, 3.5 * std::sqrt(2.0 / n));
+  EXPECT_NEAR(nees / (7 * n), 1.0, 3.5 * std::sqrt(2.0 / (7.0 * n)));
+}
+
+TEST(CalibrateCameraImu, FindsTheSizeOfTheBoard) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 5.0;
+  Rng rng(15);
+  CameraImuProblem problem = truth.Problem(rng);
+  for (BoardView& view : problem.cameras[0].views) view.points_g /= 1.07;
+  problem.estimate_board_scale = true;
+  const CameraImuCalibration result = CalibrateCameraImu(problem, Spacing(0.07));
+  ASSERT_EQ(result.termination, Termination::kConverged);
+  const int column = CameraImuLayout(problem, 6).board_scale;
+  const double sigma = std::sqrt(result.information.covariance(column, column));
+  EXPECT_LT(sigma, 2e-3);
+  EXPECT_NEAR(result.state->board_scale, 1.07, 4.0 * sigma);
+  EXPECT_LT(Nees(result, truth), 24.3);
+}
+
+// One gyroscope reading in two, one accelerometer reading in four: densities are what they were.
+TEST(CalibrateCameraImu, WeighsEachStreamByItsOwnRate) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 5.0;
+  Rng rng(16);
+  CameraImuProblem problem = truth.Problem(rng);
+  const auto keep_one_in = [](size_t n, std::vector<VectorSample>* samples) {
+    std::vector<VectorSample> kept;
+    for (size_t k = 0; k < samples->size(); k += n) kept.push_back((*samples)[k]);
+    *samples = std::move(kept);
+  };
+  keep_one_in(2, &problem.imus[0].stream.gyro);
+  keep_one_in(4, &problem.imus[0].stream.accel);
+  const CameraImuCalibration result = CalibrateCameraImu(problem, Spacing(0.08));
+  ASSERT_EQ(result.termination, Termination::kConverged);
+  EXPECT_NEAR(result.weights.imus[0].gyro_rate_hz, 100.0, 1e-6);
+  EXPECT_NEAR(result.weights.imus[0].accel_rate_hz, 50.0, 1e-6);
+  EXPECT_DOUBLE_EQ(result.weights.imus[0].gyro_stddev,
+                   truth.imu_noise.gyro_noise_density * std::sqrt(100.0));
+  EXPECT_DOUBLE_EQ(result.weights.imus[0].accel_stddev,
+                   truth.imu_noise.accel_noise_density * std::sqrt(50.0));
+}
+
 TEST(CalibrateCameraImu, UncertaintyOfIntrinsicsFlowsIntoExtrinsics) {
   SyntheticCameraImu truth;
   truth.duration_s = 5.0;

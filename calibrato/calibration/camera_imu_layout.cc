@@ -85,6 +85,7 @@ CameraImuLayout::CameraImuLayout(const CameraImuProblem& problem, int spline_ord
     Camera& camera = cameras.emplace_back();
     camera.pose = add(sensor, kPoseNames);
     if (problem.estimate_time_offsets) camera.time_offset = add(sensor, Names{"time_offset"});
+    if (problem.estimate_line_delays) camera.line_delay = add(sensor, Names{"line_delay"});
     if (of.intrinsics != IntrinsicsKnowledge::kExact) {
       camera.parameters = add(sensor, CameraModel::ParameterNames(of.model.name()));
     }
@@ -92,6 +93,10 @@ CameraImuLayout::CameraImuLayout(const CameraImuProblem& problem, int spline_ord
   gravity = border_size;
   names.insert(names.end(), {"gravity_1", "gravity_2"});
   border_size += 2;
+  if (problem.estimate_board_scale) {
+    names.emplace_back("board_scale");
+    board_scale = border_size++;
+  }
   for (size_t i = 0; i < problem.imus.size(); ++i) {
     const std::string sensor = "imu" + std::to_string(i);
     Imu& imu = imus.emplace_back();
@@ -141,6 +146,7 @@ std::optional<CameraImuState> Perturbed(const CameraImuState& state, const Camer
     camera.T_c_i = camera.T_c_i.Perturbed(border.segment<6>(columns.pose));
     camera.T_c_i.R = NearestRotation(camera.T_c_i.R);
     if (columns.time_offset >= 0) camera.time_offset_s += border(columns.time_offset);
+    if (columns.line_delay >= 0) camera.line_delay_s += border(columns.line_delay);
     if (columns.parameters >= 0) {
       const Eigen::VectorXd parameters =
           camera.model.parameters() +
@@ -149,6 +155,10 @@ std::optional<CameraImuState> Perturbed(const CameraImuState& state, const Camer
       if (!(parameters.segment<2>(focal).minCoeff() > 0.0)) return std::nullopt;
       camera.model = CameraModel(camera.model.name(), parameters);
     }
+  }
+  if (layout.board_scale >= 0) {
+    next.board_scale += border(layout.board_scale);
+    if (!(next.board_scale > 0.0)) return std::nullopt;
   }
   next.gravity_g =
       ExpSo3(GravityTangent(state.gravity_g) * border.segment<2>(layout.gravity)) * state.gravity_g;
@@ -190,11 +200,13 @@ Eigen::VectorXd CalibrationDifference(const CameraImuState& to, const CameraImuS
     const CameraCalibrationState& b = to.cameras[c];
     delta.segment<6>(columns.pose) = b.T_c_i.DifferenceTo(a.T_c_i);
     if (columns.time_offset >= 0) delta(columns.time_offset) = b.time_offset_s - a.time_offset_s;
+    if (columns.line_delay >= 0) delta(columns.line_delay) = b.line_delay_s - a.line_delay_s;
     if (columns.parameters >= 0) {
       delta.segment(columns.parameters, a.model.num_parameters()) =
           b.model.parameters() - a.model.parameters();
     }
   }
+  if (layout.board_scale >= 0) delta(layout.board_scale) = to.board_scale - from.board_scale;
   const Eigen::Vector3d axis = from.gravity_g.cross(to.gravity_g);
   const double sine = axis.norm();
   if (sine > 0.0) {

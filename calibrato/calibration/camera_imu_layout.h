@@ -14,8 +14,9 @@ namespace calibrato {
 /// ([dtheta, dt] each), then a bias knot of each IMU ([gyro, accel]), so that no measurement sees
 /// more than two blocks in a row. The border holds the calibration:
 ///
-///     for each camera:  T_c_i (6), time offset (1), parameters
+///     for each camera:  T_c_i (6), time offset (1), line delay (1), parameters
 ///     gravity (2): a turn about the two axes of GravityTangent
+///     size of the board (1)
 ///     for each IMU:     T_i_imu (6) and time offset (1), but not of IMU 0; intrinsics
 class CameraImuLayout {
  public:
@@ -25,6 +26,7 @@ class CameraImuLayout {
   struct Camera {
     int pose = 0;
     int time_offset = -1;
+    int line_delay = -1;
     int parameters = -1;
   };
   struct Imu {
@@ -35,6 +37,7 @@ class CameraImuLayout {
   };
   std::vector<Camera> cameras;
   int gravity = 0;
+  int board_scale = -1;
   std::vector<Imu> imus;
 
   int points_per_block = 0;
@@ -58,7 +61,7 @@ class CameraImuLayout {
 [[nodiscard]] Eigen::Matrix<double, 3, 2> GravityTangent(const Eigen::Vector3d& gravity_g);
 
 /// The state after a step: blocks in order, then the border. Nothing where a camera's parameters
-/// leave the model's domain (a focal length below zero).
+/// leave the model's domain (a focal length below zero), or the board's size does.
 [[nodiscard]] std::optional<CameraImuState> Perturbed(const CameraImuState& state,
                                                       const CameraImuLayout& layout,
                                                       const Eigen::VectorXd& delta);

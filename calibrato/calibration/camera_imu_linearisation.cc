@@ -75,15 +75,35 @@ class RowBatch {
   Index used_ = 0;
 };
 
+// Of each camera, in order of when they were exposed on the spline.
+using Views = std::vector<std::vector<CameraImuMeasurements::View>>;
+
+// Their time there; of a sample, that of its stamp.
+double SplineTime(const CameraImuMeasurements::View& view, const CameraCalibrationState& camera) {
+  return view.time_s + camera.time_offset_s + camera.line_delay_s * view.row_px;
+}
+
+Views InOrderOfExposure(Views views, const CameraImuState& state) {
+  for (size_t n = 0; n < views.size(); ++n) {
+    const CameraCalibrationState& camera = state.cameras[n];
+    if (camera.line_delay_s == 0.0) continue;
+    std::stable_sort(views[n].begin(), views[n].end(), [&](const auto& a, const auto& b) {
+      return SplineTime(a, camera) < SplineTime(b, camera);
+    });
+  }
+  return views;
+}
+
 // Everything that sees blocks c and c + 1.
 class BlockLinearisation {
  public:
   BlockLinearisation(const CameraImuState& state, const CameraImuLayout& layout,
-                     const CameraImuMeasurements& measurements, const CameraImuWeights& weights,
-                     int c, MatrixXd* local)
+                     const CameraImuMeasurements& measurements, const Views& views,
+                     const CameraImuWeights& weights, int c, MatrixXd* local)
       : state_(state),
         layout_(layout),
         measurements_(measurements),
+        views_(views),
         weights_(weights),
         c_(c),
         order_(state.T_g_i.order()),
@@ -104,14 +124,14 @@ class BlockLinearisation {
   }
 
  private:
-  // The range of a list that falls into this block.
-  template <typename T>
-  std::pair<size_t, size_t> RangeOf(const std::vector<T>& list, double time_offset_s) const {
+  // The range of a list that falls into this block. @param time_of  Of an item, on the spline [s].
+  template <typename T, typename TimeOf>
+  std::pair<size_t, size_t> RangeOf(const std::vector<T>& list, const TimeOf& time_of) const {
     // By the segment, not by the time: at a block's boundary rounding might part the two.
     const auto first_in = [&](int block) {
       const int segment = block * layout_.points_per_block;
       const auto found = std::partition_point(list.begin(), list.end(), [&](const T& item) {
-        return state_.T_g_i.SegmentAt(item.time_s + time_offset_s) < segment;
+        return state_.T_g_i.SegmentAt(time_of(item)) < segment;
       });
       return static_cast<size_t>(found - list.begin());
     };
@@ -160,8 +180,9 @@ class BlockLinearisation {
     const CameraImuMeasurements::Imu& samples = measurements_.imus[n];
     const ImuCalibrationState& imu = state_.imus[n];
     const double offset = imu.time_offset_s;
-    auto [g, g_end] = RangeOf(samples.gyro, offset);
-    auto [a, a_end] = RangeOf(samples.accel, offset);
+    const auto time_of = [&](const auto& sample) { return sample.time_s + offset; };
+    auto [g, g_end] = RangeOf(samples.gyro, time_of);
+    auto [a, a_end] = RangeOf(samples.accel, time_of);
     const bool is_further = n > 0;
     const bool has_lever = is_further || !imu.intrinsics.lever_arms_i.isZero(0.0) ||
                            layout_.imus[n].num_intrinsics > 24;
@@ -330,28 +351,34 @@ class BlockLinearisation {
   bool AddViews(size_t n) {
     const CameraCalibrationState& camera = state_.cameras[n];
     const CameraImuLayout::Camera& camera_columns = layout_.cameras[n];
-    const auto& views = measurements_.cameras[n];
-    const auto [begin, end] = RangeOf(views, camera.time_offset_s);
+    const auto& views = views_[n];
+    const auto time_of = [&](const auto& view) { return SplineTime(view, camera); };
+    const auto [begin, end] = RangeOf(views, time_of);
     const Index num_parameters = camera_columns.parameters >= 0 ? camera.model.num_parameters() : 0;
     const Index num_time = camera_columns.time_offset >= 0 ? 1 : 0;
+    const Index num_line = camera_columns.line_delay >= 0 ? 1 : 0;
+    const Index num_scale = layout_.board_scale >= 0 ? 1 : 0;
     const double inverse_variance = 1.0 / (weights_.corner_noise_px * weights_.corner_noise_px);
     ViewRowsOptions options;
     options.parameters = num_parameters > 0;
     options.loss_scale_px = weights_.loss_scale * weights_.corner_noise_px;
     ViewRows view_rows;
     SplineJacobians J;
-    // Columns that move the board's pose in the camera: points, T_c_i, time offset.
+    // Columns that move the board's pose in the camera: points, T_c_i, time offset, line delay,
+    // size of the board.
     const Index rotations = 3 * order_;
-    const Index movers = 2 * rotations + 6 + num_time;
+    const Index movers = 2 * rotations + 6 + num_time + num_line + num_scale;
     MatrixXd J_pose(6, movers);
     MatrixXd product(movers + num_parameters + 1, movers + num_parameters + 1);
     std::vector<int> columns;
     for (size_t v = begin; v < end; ++v) {
-      const double t = views[v].time_s + camera.time_offset_s;
+      const double t = SplineTime(views[v], camera);
       const SplinePoint point = state_.T_g_i.At(t, Depth::kPose, &J);
       const Rigid3 T_i_g = point.T_a_b.Inverse();
       const Rigid3 T_c_g = camera.T_c_i * T_i_g;
-      if (!LineariseView(camera.model, *views[v].view, T_c_g, options, &view_rows)) return false;
+      // A board twice as large looks as one of the stated size at half the distance.
+      const Rigid3 T_seen{T_c_g.R, T_c_g.t / state_.board_scale};
+      if (!LineariseView(camera.model, *views[v].view, T_seen, options, &view_rows)) return false;
       cost_ += inverse_variance * view_rows.cost_px2;
 
       // T_c_g = T_c_i T_g_i^-1: a turn dtheta and a shift dt of T_g_i turn it by -R_c_g dtheta and
@@ -366,10 +393,18 @@ class BlockLinearisation {
         J_pose.block<3, 3>(3, rotations + 3 * j) = -J.weight[static_cast<size_t>(j)] * R_c_g;
       }
       J_pose.middleCols<6>(2 * rotations) = JacobianProductFirst(camera.T_c_i, T_i_g);
-      if (num_time > 0) {
+      Index column = 2 * rotations + 6;
+      if (num_time + num_line > 0) {
         const Vector3d omega_g = point.T_a_b.R * point.omega_b;
-        J_pose.col(2 * rotations + 6) << -R_c_g * omega_g,
-            -shift_of_turn * omega_g - R_c_g * point.velocity_a;
+        Eigen::Matrix<double, 6, 1> pose_rate;
+        pose_rate << -R_c_g * omega_g, -shift_of_turn * omega_g - R_c_g * point.velocity_a;
+        if (num_time > 0) J_pose.col(column++) = pose_rate;
+        if (num_line > 0) J_pose.col(column++) = views[v].row_px * pose_rate;
+      }
+      if (num_scale > 0) {
+        J_pose.bottomRows<3>().leftCols(column) /= state_.board_scale;
+        J_pose.col(column).head<3>().setZero();
+        J_pose.col(column).tail<3>() = -T_seen.t / state_.board_scale;
       }
 
       columns.clear();
@@ -377,6 +412,8 @@ class BlockLinearisation {
       AppendPointColumns(J.first, false, &columns);
       for (int i = 0; i < 6; ++i) columns.push_back(BorderColumn(camera_columns.pose + i));
       if (num_time > 0) columns.push_back(BorderColumn(camera_columns.time_offset));
+      if (num_line > 0) columns.push_back(BorderColumn(camera_columns.line_delay));
+      if (num_scale > 0) columns.push_back(BorderColumn(layout_.board_scale));
       for (int i = 0; i < num_parameters; ++i) {
         columns.push_back(BorderColumn(camera_columns.parameters + i));
       }
@@ -401,6 +438,7 @@ class BlockLinearisation {
   const CameraImuState& state_;
   const CameraImuLayout& layout_;
   const CameraImuMeasurements& measurements_;
+  const Views& views_;
   const CameraImuWeights& weights_;
   const int c_;
   const int order_;
@@ -470,16 +508,18 @@ std::optional<double> Linearise(const CameraImuProblem& problem, const CameraImu
                                 const CameraImuMeasurements& measurements,
                                 const CameraImuWeights& weights, ArrowheadSystem* system) {
   system->SetZero();
-  double cost = AddCameraPriors(problem, state, layout, system);
-  if (problem.prior) cost += AddCalibrationPrior(*problem.prior, state, layout, system);
+  // What was known of the lenses beforehand is part of what the earlier recordings say.
+  double cost = problem.prior ? AddCalibrationPrior(*problem.prior, state, layout, system)
+                              : AddCameraPriors(problem, state, layout, system);
   const int num_tasks = state.num_blocks() - 1;
+  const Views views = InOrderOfExposure(measurements.cameras, state);
   std::vector<MatrixXd> locals(static_cast<size_t>(std::min(num_tasks, kBlocksInARound)));
   std::vector<std::optional<double>> costs(locals.size());
   for (int first = 0; first < num_tasks; first += kBlocksInARound) {
     const auto count = static_cast<size_t>(std::min(kBlocksInARound, num_tasks - first));
     ParallelFor(count, [&](size_t i) {
-      BlockLinearisation block(state, layout, measurements, weights, first + static_cast<int>(i),
-                               &locals[i]);
+      BlockLinearisation block(state, layout, measurements, views, weights,
+                               first + static_cast<int>(i), &locals[i]);
       costs[i] = block.Run();
     });
     for (size_t i = 0; i < count; ++i) {

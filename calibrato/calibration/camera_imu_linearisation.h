@@ -15,8 +15,10 @@ namespace calibrato {
 /// The measurements that take part, on the spline's time [s] but for the time offsets that are
 /// still to be found; each list in order of time.
 struct CameraImuMeasurements {
+  /// Corners of one instant: an image's; of a rolling shutter, one corner.
   struct View {
-    double time_s = 0.0;
+    double time_s = 0.0;  ///< Of the stamp.
+    double row_px = 0.0;  ///< Exposed a line delay times this later [px].
     const BoardView* view = nullptr;
   };
   struct Sample {
@@ -29,7 +31,7 @@ struct CameraImuMeasurements {
   };
   std::vector<std::vector<View>> cameras;
   std::vector<Imu> imus;
-  std::deque<BoardView> partial_views;  ///< Views without their outliers, pointed to above.
+  std::deque<BoardView> partial_views;  ///< Parts of views, pointed to above.
 };
 
 /// By what residuals are divided.
@@ -39,6 +41,10 @@ struct CameraImuWeights {
     double accel_stddev = 1.0;  ///< [m/s^2]
     double gyro_walk = 1.0;     ///< [rad/s^2/sqrt(Hz)]
     double accel_walk = 1.0;    ///< [m/s^3/sqrt(Hz)]
+    /// Of the streams as they were recorded, whatever the data sheet says [Hz]: a sample's standard
+    /// deviation is the density times the root of its stream's rate.
+    double gyro_rate_hz = 1.0;
+    double accel_rate_hz = 1.0;
   };
   double corner_noise_px = 1.0;
   std::vector<Imu> imus;

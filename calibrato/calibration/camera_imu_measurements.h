@@ -24,7 +24,7 @@ struct CameraImuResiduals {
   std::vector<std::vector<Eigen::Vector3d>> accel;        ///< [imu][sample] [m/s^2]
 };
 
-/// Times on the spline, by the state's time offsets [s].
+/// Times on the spline, by the state's time offsets [s]; of a view, that of its first row.
 [[nodiscard]] double TimeOfView(const CameraImuState& state, size_t camera, Time stamp);
 [[nodiscard]] double TimeOfSample(const CameraImuState& state, size_t imu, Time stamp);
 
@@ -33,6 +33,10 @@ struct CameraImuResiduals {
 
 /// What lies on the trajectory and projects.
 [[nodiscard]] CameraImuSelection SelectionOfFinite(const CameraImuResiduals& residuals);
+
+/// The same, where their residuals are not needed: of samples none is predicted.
+[[nodiscard]] CameraImuSelection SelectionOnTrajectory(const CameraImuProblem& problem,
+                                                       const CameraImuState& state);
 
 /// The measurements of a selection, for Linearise. They point into the problem.
 [[nodiscard]] CameraImuMeasurements MeasurementsOf(const CameraImuProblem& problem,

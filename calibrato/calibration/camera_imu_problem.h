@@ -41,6 +41,9 @@ struct CameraImuProblem {
   std::vector<CameraImuImu> imus;        ///< At least one.
   double gravity = kStandardGravity;     ///< |g|, held [m/s^2].
   bool estimate_time_offsets = true;     ///< Else held at zero.
+  bool estimate_line_delays = false;     ///< Else held at zero: shutters are global.
+  /// Else held at 1. The accelerometer tells what the images can't: how long a metre is.
+  bool estimate_board_scale = false;
   /// Noise of one coordinate of a corner [px], the same for all cameras. Estimated where not given.
   std::optional<double> corner_noise_px;
   /// Adds to what this recording says, and is where its solve starts from.
@@ -53,7 +56,7 @@ struct CameraImuOptions {
   std::optional<double> knot_spacing_s;
   /// Solve once more with half that spacing and report by how much the calibration moves.
   bool check_knot_spacing = false;
-  int max_iterations = 50;  ///< Of all rounds together.
+  int max_iterations = 100;  ///< Of all rounds together.
   /// Time offsets are looked for within +- this [s].
   double max_time_offset_s = 1.0;
   /// Estimate the noise of gyroscopes and accelerometers too, in place of what their data sheets

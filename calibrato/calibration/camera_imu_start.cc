@@ -4,9 +4,11 @@
 #include <cmath>
 
 #include "calibrato/base/parallel.h"
+#include "calibrato/calibration/gyro_turns.h"
 #include "calibrato/calibration/outliers.h"
 #include "calibrato/calibration/plane_pose.h"
 #include "calibrato/calibration/rate_alignment.h"
+#include "calibrato/calibration/suspects.h"
 #include "calibrato/calibration/view_fit.h"
 #include "calibrato/geometry/so3.h"
 
@@ -25,15 +27,11 @@ constexpr double kPoseLossPx = 1.0;
 constexpr int kPoseIterations = 8;
 constexpr size_t kViewsInATask = 8;
 
-struct TimedPose {
-  double time_s = 0.0;
-  Rigid3 pose;
-};
-
 // Poses of the board in a camera's views, on the camera's clock since `epoch`, and the squared
 // errors of their corners.
 struct BoardPoses {
   std::vector<TimedPose> T_c_g;
+  std::vector<size_t> views;  // Which they are of.
   std::vector<double> squared_errors_px2;
 };
 
@@ -56,6 +54,7 @@ BoardPoses FindBoardPoses(const CameraImuCamera& camera, Time epoch) {
   for (size_t v = 0; v < num_views; ++v) {
     if (!poses[v]) continue;
     result.T_c_g.push_back({(camera.views[v].stamp - epoch).seconds(), *poses[v]});
+    result.views.push_back(v);
     for (const double squared : residuals[v].colwise().squaredNorm()) {
       result.squared_errors_px2.push_back(squared);
     }
@@ -75,11 +74,12 @@ std::vector<RateInterval> RatesOf(const std::vector<TimedPose>& T_c_g) {
   return rates;
 }
 
-std::vector<RateSample> SamplesOf(const std::vector<VectorSample>& gyro, Time epoch) {
+std::vector<RateSample> SamplesOf(const std::vector<VectorSample>& gyro,
+                                  const std::vector<bool>& suspect, Time epoch) {
   std::vector<RateSample> samples;
   samples.reserve(gyro.size());
-  for (const VectorSample& sample : gyro) {
-    samples.push_back({(sample.stamp - epoch).seconds(), sample.value});
+  for (size_t k = 0; k < gyro.size(); ++k) {
+    if (!suspect[k]) samples.push_back({(gyro[k].stamp - epoch).seconds(), gyro[k].value});
   }
   return samples;
 }
@@ -87,22 +87,9 @@ std::vector<RateSample> SamplesOf(const std::vector<VectorSample>& gyro, Time ep
 // A path through poses T_g_i at some times: turned by the gyroscope in between.
 class StartPath {
  public:
-  StartPath(std::vector<TimedPose> anchors, const std::vector<RateSample>& gyro,
-            const Vector3d& gyro_bias)
-      : anchors_(std::move(anchors)) {
-    turns_.reserve(gyro.size());
-    for (size_t k = 0; k < gyro.size(); ++k) {
-      if (k == 0) {
-        turns_.push_back({gyro[k].time_s, Matrix3d::Identity(), gyro[k].rate - gyro_bias});
-        continue;
-      }
-      const Turn& last = turns_.back();
-      const Vector3d rate = gyro[k].rate - gyro_bias;
-      const double duration = gyro[k].time_s - last.time_s;
-      turns_.push_back(
-          {gyro[k].time_s, last.R * ExpSo3(0.5 * duration * (last.rate + rate)), rate});
-    }
-    for (const TimedPose& anchor : anchors_) turns_at_anchors_.push_back(TurnAt(anchor.time_s));
+  StartPath(std::vector<TimedPose> anchors, const GyroTurns& turns)
+      : anchors_(std::move(anchors)), turns_(turns) {
+    for (const TimedPose& anchor : anchors_) turns_at_anchors_.push_back(turns_.At(anchor.time_s));
   }
 
   Rigid3 operator()(double t_s) const {
@@ -110,7 +97,7 @@ class StartPath {
                                             [&](const TimedPose& a) { return a.time_s <= t_s; });
     const auto b = static_cast<size_t>(after - anchors_.begin());
     const size_t a = b == 0 ? 0 : b - 1;
-    const Matrix3d turned = anchors_[a].pose.R * turns_at_anchors_[a].transpose() * TurnAt(t_s);
+    const Matrix3d turned = anchors_[a].pose.R * turns_at_anchors_[a].transpose() * turns_.At(t_s);
     if (b == 0 || b == anchors_.size()) return {turned, anchors_[a].pose.t};
     const double duration = anchors_[b].time_s - anchors_[a].time_s;
     const double u = (t_s - anchors_[a].time_s) / duration;
@@ -122,20 +109,6 @@ class StartPath {
   }
 
  private:
-  struct Turn {
-    double time_s;
-    Matrix3d R;
-    Vector3d rate;
-  };
-
-  // The gyroscope's turn since its first sample.
-  Matrix3d TurnAt(double t_s) const {
-    const auto after = std::partition_point(turns_.begin(), turns_.end(),
-                                            [&](const Turn& turn) { return turn.time_s <= t_s; });
-    const Turn& before = after == turns_.begin() ? *after : *(after - 1);
-    return before.R * ExpSo3((t_s - before.time_s) * before.rate);
-  }
-
   // A cubic with the slopes of its neighbours; a straight line through gaps.
   Vector3d PositionAt(size_t a, size_t b, double u, double duration) const {
     const Vector3d& p = anchors_[a].pose.t;
@@ -154,9 +127,30 @@ class StartPath {
   }
 
   std::vector<TimedPose> anchors_;
-  std::vector<Turn> turns_;
+  const GyroTurns& turns_;
   std::vector<Matrix3d> turns_at_anchors_;
 };
+
+// Erases the poses of suspect views, and says which views these are.
+std::vector<bool> TakeOutSuspects(const CameraCalibrationState& camera, const GyroTurns& turns,
+                                  size_t num_views, BoardPoses* poses) {
+  std::vector<TimedPose> on_imu_clock = poses->T_c_g;
+  for (TimedPose& pose : on_imu_clock) pose.time_s += camera.time_offset_s;
+  const std::vector<bool> suspect = FindSuspectViews(on_imu_clock, camera.T_c_i.R, turns);
+  std::vector<bool> suspect_views(num_views, false);
+  BoardPoses kept;
+  for (size_t k = 0; k < suspect.size(); ++k) {
+    if (suspect[k]) {
+      suspect_views[poses->views[k]] = true;
+    } else {
+      kept.T_c_g.push_back(poses->T_c_g[k]);
+      kept.views.push_back(poses->views[k]);
+    }
+  }
+  poses->T_c_g = std::move(kept.T_c_g);
+  poses->views = std::move(kept.views);
+  return suspect_views;
+}
 
 // Poses T_g_i on the IMU's clock: camera 0's, and others' where those leave a gap.
 std::vector<TimedPose> PosesOfImu(const std::vector<BoardPoses>& poses,
@@ -192,7 +186,12 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
   const ImuStream& stream = problem.imus.front().stream;
   if (stream.gyro.size() < 2 || stream.accel.size() < 2) return std::nullopt;
   const Time epoch = stream.gyro.front().stamp;
-  const std::vector<RateSample> gyro = SamplesOf(stream.gyro, epoch);
+  CameraImuSuspects suspects;
+  for (const CameraImuImu& imu : problem.imus) {
+    suspects.gyro.push_back(FindSuspectSamples(imu.stream.gyro));
+    suspects.accel.push_back(FindSuspectSamples(imu.stream.accel));
+  }
+  const std::vector<RateSample> gyro = SamplesOf(stream.gyro, suspects.gyro[0], epoch);
 
   std::vector<BoardPoses> poses;
   std::vector<CameraCalibrationState> cameras;
@@ -217,8 +216,13 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
     if (n == 0) bias.gyro = alignment->gyro_bias;
   }
   if (problem.prior) bias = problem.prior->estimate.imus.front().biases.back();
+  const GyroTurns turns(gyro, bias.gyro);
+  for (size_t n = 0; n < poses.size(); ++n) {
+    suspects.views.push_back(
+        TakeOutSuspects(cameras[n], turns, problem.cameras[n].views.size(), &poses[n]));
+  }
   const std::vector<TimedPose> anchors = PosesOfImu(poses, cameras);
-  const StartPath path(anchors, gyro, bias.gyro);
+  const StartPath path(anchors, turns);
 
   const double begin = std::max({anchors.front().time_s - kMargin, gyro.front().time_s,
                                  (stream.accel.front().stamp - epoch).seconds()});
@@ -234,12 +238,14 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
                           knot_spacing_s, options.spline_order, Vector3d::Zero(),
                           std::move(cameras), problem.imus.size()),
       .corner_noise_px = std::max(1e-6, NoiseFromMedian(std::move(squared_errors))),
+      .suspects = std::move(suspects),
   };
   CameraImuState& state = result.state;
   Vector3d force_g = Vector3d::Zero();
-  for (const VectorSample& sample : stream.accel) {
-    const double t = (sample.stamp - start).seconds();
-    if (t >= 0.0 && t <= duration) force_g += state.T_g_i.PoseAt(t).R * sample.value;
+  for (size_t k = 0; k < stream.accel.size(); ++k) {
+    const double t = (stream.accel[k].stamp - start).seconds();
+    if (result.suspects.accel[0][k] || !(t >= 0.0 && t <= duration)) continue;
+    force_g += state.T_g_i.PoseAt(t).R * stream.accel[k].value;
   }
   state.gravity_g = problem.prior ? problem.prior->estimate.gravity_g
                                   : Vector3d(-problem.gravity * force_g.normalized());
@@ -259,8 +265,9 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
         const Matrix3d R_next = state.T_g_i.PoseAt(t + spacing).R;
         rates.push_back({t, t + spacing, LogSo3(R.transpose() * R_next) / spacing});
       }
-      const auto alignment = AlignRates(rates, SamplesOf(problem.imus[n].stream.gyro, start),
-                                        options.max_time_offset_s);
+      const auto alignment =
+          AlignRates(rates, SamplesOf(problem.imus[n].stream.gyro, result.suspects.gyro[n], start),
+                     options.max_time_offset_s);
       if (!alignment) return std::nullopt;
       imu.T_i_imu.R = alignment->R_c_i;
       imu.time_offset_s = -alignment->time_offset_s;

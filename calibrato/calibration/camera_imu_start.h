@@ -9,10 +9,19 @@
 
 namespace calibrato {
 
+/// Measurements that their neighbours contradict (suspects.h). They take no part in the start, and
+/// should take none in a solve before the trajectory can judge them.
+struct CameraImuSuspects {
+  std::vector<std::vector<bool>> views;  ///< [camera][view]
+  std::vector<std::vector<bool>> gyro;   ///< [imu][sample]
+  std::vector<std::vector<bool>> accel;  ///< [imu][sample]
+};
+
 /// Where to start a camera-IMU calibration from, found in the data alone.
 struct CameraImuStart {
   CameraImuState state;
   double corner_noise_px = 1.0;  ///< Of one coordinate, from the views' own poses [px].
+  CameraImuSuspects suspects;
 };
 
 /// The board's pose in each view from its corners; the cameras' time offsets, rotations and the

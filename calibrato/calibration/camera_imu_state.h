@@ -23,6 +23,9 @@ struct CameraCalibrationState {
   CameraModel model;
   Rigid3 T_c_i;                ///< Kalibr's T_cam_imu.
   double time_offset_s = 0.0;  ///< t_i = t_c + time_offset [s]
+  /// Of a rolling shutter: a corner in row v was exposed this times v after the stamp [s]. Rows are
+  /// read upwards where it is negative.
+  double line_delay_s = 0.0;
 };
 
 /// What is estimated of an IMU.
@@ -40,6 +43,8 @@ struct CameraImuState {
   Eigen::Vector3d gravity_g;  ///< [m/s^2], of fixed length.
   std::vector<CameraCalibrationState> cameras;
   std::vector<ImuCalibrationState> imus;
+  /// True size of the board over the one that the target states; T_g_i is in true metres.
+  double board_scale = 1.0;
 
   /// Bias knots are this far apart: (order - 1) spacings of the trajectory's knots.
   double block_duration_s() const { return (T_g_i.order() - 1) * T_g_i.spacing_s(); }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "calibrato/calibration/suspects.h"
 #include "calibrato/geometry/spline_basis.h"
 
 namespace calibrato {
@@ -61,8 +62,20 @@ double CrossValidation(const std::vector<VectorSample>& samples, double duration
   return squares / num_readings / (left * left);
 }
 
+// A spike is no motion: it would ask for the finest knots.
+std::vector<VectorSample> WithoutSuspects(const std::vector<VectorSample>& samples) {
+  const std::vector<bool> suspect = FindSuspectSamples(samples);
+  std::vector<VectorSample> kept;
+  kept.reserve(samples.size());
+  for (size_t k = 0; k < samples.size(); ++k) {
+    if (!suspect[k]) kept.push_back(samples[k]);
+  }
+  return kept;
+}
+
 // The spacing that predicts best; nothing for a stream too short to tell.
-std::optional<double> BestSpacing(const std::vector<VectorSample>& samples) {
+std::optional<double> BestSpacing(const std::vector<VectorSample>& all_samples) {
+  const std::vector<VectorSample> samples = WithoutSuspects(all_samples);
   if (samples.size() < kMinReadings) return std::nullopt;
   const double duration = (samples.back().stamp - samples.front().stamp).seconds();
   if (!(duration > 0.0)) return std::nullopt;

@@ -13,9 +13,9 @@ namespace calibrato {
 ///
 ///     GCV = (sum of squared residuals / N) / (1 - n / N)^2,  n coefficients, N readings,
 ///
-/// is where motion ends and noise begins. The finer of the two streams' spacings is taken, and
-/// divided by sqrt(2), which makes what the spline can't follow at least ten times less than what
-/// it would cost to follow noise.
+/// is where motion ends and noise begins. Spikes (suspects.h) take no part. The finer of the two
+/// streams' spacings is taken, and divided by sqrt(2), which makes what the spline can't follow at
+/// least ten times less than what it would cost to follow noise.
 ///
 /// Candidates run from 0.4 s down in steps of sqrt(2), as far as there are 2.5 readings for each
 /// coefficient. 0.1 s for streams of fewer than 20 readings.

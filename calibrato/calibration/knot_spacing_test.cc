@@ -51,5 +51,12 @@ TEST(KnotSpacing, LeavesTwoAndAHalfReadingsForEachCoefficient) {
 
 TEST(KnotSpacing, HasADefaultForShortStreams) { EXPECT_EQ(KnotSpacingFor({}), 0.1); }
 
+TEST(KnotSpacing, IsNotMadeFineBySpikes) {
+  const ImuStream clean = Stream(1.0, 0.01);
+  ImuStream spiked = clean;
+  for (size_t k = 50; k < 4000; k += 333) spiked.gyro[k].value.x() += 3.0;
+  EXPECT_EQ(KnotSpacingFor(spiked), KnotSpacingFor(clean));
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -40,7 +40,24 @@ double NoiseFromMedian(std::vector<double> squared_errors_px2) {
 }
 
 double OutlierThreshold(std::vector<double> squared_errors_px2) {
-  return std::max(1e-3, kOutlierSigmas * NoiseFromMedian(std::move(squared_errors_px2)));
+  const double noise = NoiseFromMedian(squared_errors_px2);
+  if (!(noise > 0.0)) return 1e-3;
+  const auto num_errors = static_cast<double>(squared_errors_px2.size());
+  // How long, in sigmas, the k-th longest error must be for all k to be outliers.
+  const auto wanted = [num_errors](size_t k) {
+    return std::sqrt(2.0 * std::log(num_errors / (kFalseDiscoveryRate * static_cast<double>(k))));
+  };
+  std::erase_if(squared_errors_px2, [noise](double squared) {
+    return squared <= kOutlierSigmas * kOutlierSigmas * noise * noise;
+  });
+  std::sort(squared_errors_px2.begin(), squared_errors_px2.end());
+  size_t num_outliers = squared_errors_px2.size();  // The shortest of them comes first.
+  for (const double squared : squared_errors_px2) {
+    if (std::sqrt(squared) >= wanted(num_outliers) * noise) break;
+    --num_outliers;
+  }
+  const double limit = wanted(std::max<size_t>(1, num_outliers));
+  return std::max(1e-3, noise * std::max(kOutlierSigmas, limit));
 }
 
 int ViewInliers::count() const {

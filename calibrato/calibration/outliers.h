@@ -10,10 +10,14 @@
 
 namespace calibrato {
 
-/// A corner is an outlier when its error is longer than this many sigmas of the noise of one
-/// coordinate. Of Gaussian errors one in 270,000 is that long (exp(-5^2 / 2)), so that leaving
-/// outliers out changes neither the estimate nor its covariance where there are none.
+/// No corner is an outlier unless its error is longer than this many sigmas of the noise of one
+/// coordinate. Of Gaussian errors one in 270,000 is that long (exp(-5^2 / 2)).
 inline constexpr double kOutlierSigmas = 5.0;
+
+/// Nor unless this share, at most, of what is left out may be Gaussian noise: a single corner that
+/// is a little too far off tells nothing yet. It is also the chance that anything is left out where
+/// there are no outliers, so that leaving them out changes neither the estimate nor its covariance.
+inline constexpr double kFalseDiscoveryRate = 1e-3;
 
 /// A view with fewer corners says too little of the board's pose to be checked against it.
 inline constexpr int kMinCorners = 4;
@@ -22,8 +26,13 @@ inline constexpr int kMinCorners = 4;
 /// may be outliers. For Gaussian errors the median of e^2 is 2 ln 2 sigma^2. 0 without errors.
 [[nodiscard]] double NoiseFromMedian(std::vector<double> squared_errors_px2);
 
-/// The length of error above which a corner is an outlier [px]: kOutlierSigmas of the noise, and at
-/// least a thousandth of a pixel.
+/// The length of error above which a corner is an outlier [px], and at least a thousandth of a
+/// pixel. With the noise sigma of NoiseFromMedian and N errors,
+///
+///     threshold = sigma max(kOutlierSigmas, sqrt(2 ln(N / (kFalseDiscoveryRate k)))),
+///
+/// k the largest number such that k errors are that long, else 1: Y. Benjamini and Y. Hochberg,
+/// "Controlling the false discovery rate", J. R. Statist. Soc. B 57 (1995).
 [[nodiscard]] double OutlierThreshold(std::vector<double> squared_errors_px2);
 
 /// Which corners of a view take part in a fit, and from which pose.

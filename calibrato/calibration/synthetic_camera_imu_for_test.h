@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -28,6 +29,7 @@ struct SyntheticCameraImu {
   Eigen::Vector3d gyro_bias{0.01, -0.02, 0.005};
   Eigen::Vector3d accel_bias{0.05, 0.1, -0.08};
   ImuIntrinsics intrinsics;
+  double line_delay_s = 0.0;  ///< Of all cameras.
 
   // How it is measured.
   double duration_s = 10.0;
@@ -37,13 +39,15 @@ struct SyntheticCameraImu {
   double noise_scale = 1.0;  ///< 0: measurements are exact.
   double translation = 1.0;  ///< Amplitude of the motion; 0: none.
   double rotation = 1.0;
+  double slowest_rad_s = 2.0;  ///< Of three frequencies, each 1.73 times the one before.
+  Eigen::Vector3d rotation_of_axis = Eigen::Vector3d::Ones();  ///< Factors of roll, pitch, yaw.
 
   // The rig at a time of the IMU's clock; T_w_i of ImuMotion is T_g_i.
   ImuMotion MotionAt(double t) const {
     const auto sum = [&](double phase, double scale) {
       // value, first and second derivative
       Eigen::Vector3d result = Eigen::Vector3d::Zero();
-      double frequency = 2.0;
+      double frequency = slowest_rad_s;
       for (int k = 0; k < 3; ++k) {
         const double a = scale / (1.0 + k);
         const double angle = frequency * t + phase * (1.0 + k);
@@ -57,7 +61,8 @@ struct SyntheticCameraImu {
     Eigen::Matrix3d angles;
     for (int axis = 0; axis < 3; ++axis) {
       position.row(axis) = sum(0.7 + axis, 0.05 * translation).transpose();
-      angles.row(axis) = sum(2.1 + 1.3 * axis, 0.15 * rotation).transpose();
+      angles.row(axis) =
+          sum(2.1 + 1.3 * axis, 0.15 * rotation * rotation_of_axis(axis)).transpose();
     }
     // The camera looks at the board's middle from 0.7 m; z of g points at it.
     const Eigen::Matrix3d R_g_c = ExpSo3({std::numbers::pi, 0.0, 0.0});
@@ -72,7 +77,7 @@ struct SyntheticCameraImu {
   Rigid3 PoseAt(double t) const {
     Eigen::Vector3d p = BoardCentre(board) + Eigen::Vector3d(0.0, 0.0, 0.7);
     for (int axis = 0; axis < 3; ++axis) {
-      double frequency = 2.0;
+      double frequency = slowest_rad_s;
       for (int k = 0; k < 3; ++k) {
         p(axis) +=
             translation * 0.05 / (1.0 + k) * std::sin(frequency * t + (0.7 + axis) * (1.0 + k));
@@ -86,6 +91,20 @@ struct SyntheticCameraImu {
   Resolution resolution{640, 480};
   Time epoch = Time::FromNanoseconds(1'400'000'000'000'000'000);
 
+  // Where a camera sees a point in the image that is stamped t_c; its row is exposed when its row's
+  // turn has come.
+  [[nodiscard]] std::optional<Eigen::Vector2d> PixelAt(size_t camera, double t_c,
+                                                       const Eigen::Vector3d& point_g) const {
+    double row = 0.0;
+    for (int round = 0;; ++round) {
+      const Rigid3 T_c_g =
+          T_c_i[camera] * PoseAt(t_c + time_offset_s[camera] + line_delay_s * row).Inverse();
+      const auto pixel = model.Project(T_c_g * point_g);
+      if (!pixel || line_delay_s == 0.0 || round == 6) return pixel;
+      row = pixel->y();
+    }
+  }
+
   [[nodiscard]] CameraImuProblem Problem(Rng& rng) const {
     CameraImuProblem problem;
     const Eigen::Matrix3Xd points = BoardPoints(board);
@@ -93,13 +112,12 @@ struct SyntheticCameraImu {
       CameraImuCamera camera{model, {}, IntrinsicsKnowledge::kExact, {}};
       for (int k = 0; k < duration_s * camera_rate_hz; ++k) {
         const double t_c = 0.0123 + k / camera_rate_hz;
-        const Rigid3 T_c_g = T_c_i[n] * PoseAt(t_c + time_offset_s[n]).Inverse();
         BoardView view;
         view.stamp = epoch + Duration::FromSeconds(t_c);
         view.name = std::to_string(view.stamp.nanoseconds());
         std::vector<Eigen::Vector2d> pixels;
         for (int c = 0; c < points.cols(); ++c) {
-          const auto pixel = model.Project(T_c_g * points.col(c));
+          const auto pixel = PixelAt(n, t_c, points.col(c));
           const Eigen::Vector2d noise(rng.Normal(), rng.Normal());
           if (!pixel || !(pixel->minCoeff() >= 0.0) || pixel->x() > resolution.width - 1 ||
               pixel->y() > resolution.height - 1) {

@@ -59,6 +59,10 @@ std::vector<std::vector<Entry>> EntriesOf(const Recording& recording, bool* is_s
 std::vector<std::vector<bool>> Inside(const std::vector<std::vector<Entry>>& entries,
                                       bool is_stamped, const std::string& path,
                                       const RecordingWindow& window) {
+  if (window.every < 1) {
+    throw InputError({"--every " + std::to_string(window.every), "",
+                      "at least every first frame is used", "give 1 or more"});
+  }
   if ((window.from_s || window.to_s) && !is_stamped) {
     throw InputError({"photos without stamps have no time", path, "--from and --to need one",
                       "leave them out, or choose photos by --images"});

@@ -36,10 +36,6 @@ struct Options {
 
 void CheckOptions(const Options& options) {
   for (const std::string& model : options.models) (void)CameraModel::NumParameters(model);
-  if (options.window.every < 1) {
-    throw InputError({"--every " + std::to_string(options.window.every), "",
-                      "at least every first frame is used", "give 1 or more"});
-  }
 }
 
 CameraRigProblem MakeProblem(std::vector<CameraViews>* found, const Options& options) {

@@ -37,10 +37,11 @@ struct Options {
   std::string cameras;
   std::string camera_result;
   std::vector<std::string> imus;
-  std::string imu_model = "calibrated";
+  std::string imu_model;  // As the IMU's file says, if empty.
   bool estimate_noise = false;
   bool joint_intrinsics = false;
-  int max_iterations = 50;
+  bool line_delay = false;
+  int max_iterations = 100;
   double gravity = kStandardGravity;
   RecordingWindow window;
   std::string out;
@@ -57,6 +58,12 @@ Eigen::MatrixXd IntrinsicsCovariance(const Value& result, size_t camera, const C
   const Value& covariance = result.At("covariance");
   const std::vector<Value>& names = covariance.At("names").elements();
   const std::vector<Value>& rows = covariance.At("matrix").elements();
+  if (rows.size() != names.size()) {
+    covariance.Fail(
+        "a covariance that is not square",
+        std::to_string(names.size()) + " names and " + std::to_string(rows.size()) + " rows",
+        "calibrate the camera again, or leave out --camera-result");
+  }
   const std::string prefix = "cam" + std::to_string(camera) + ".";
   std::vector<size_t> places;
   for (const std::string& parameter : CameraModel::ParameterNames(model.name())) {
@@ -76,7 +83,28 @@ Eigen::MatrixXd IntrinsicsCovariance(const Value& result, size_t camera, const C
       block(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[places[j]];
     }
   }
+  // Zero rows are those of parameters that were held.
+  Eigen::MatrixXd whole = block;
+  for (Eigen::Index k = 0; k < whole.rows(); ++k) {
+    if (whole(k, k) == 0.0) whole(k, k) = 1.0;
+  }
+  if (!block.allFinite() || whole.llt().info() != Eigen::Success) {
+    covariance.Fail("a covariance that is not positive definite", "of " + prefix,
+                    "calibrate the camera again, or leave out --camera-result");
+  }
   return block;
+}
+
+// Whether two chains name the same lenses with the same parameters.
+bool AreTheSame(const std::vector<Camera>& one, const std::vector<Camera>& other) {
+  if (one.size() != other.size()) return false;
+  for (size_t n = 0; n < one.size(); ++n) {
+    if (one[n].model.name() != other[n].model.name() ||
+        !one[n].model.parameters().isApprox(other[n].model.parameters(), 1e-9)) {
+      return false;
+    }
+  }
+  return true;
 }
 
 KnownCameras ReadCameras(const Options& options, std::vector<std::string>* warnings) {
@@ -85,14 +113,26 @@ KnownCameras ReadCameras(const Options& options, std::vector<std::string>* warni
                       "give --cameras camchain.yaml, or --camera-result with the --out folder of "
                       "calibrate camera"});
   }
-  const std::string path = options.cameras.empty()
-                               ? (fs::path(options.camera_result) / "camchain.yaml").string()
-                               : options.cameras;
   KnownCameras known;
-  known.chain = CameraChainFromValue(ReadYaml(path), warnings);
+  if (!options.cameras.empty()) {
+    known.chain = CameraChainFromValue(ReadYaml(options.cameras), warnings);
+  }
   std::optional<Value> result;
   if (!options.camera_result.empty()) {
     result = ReadJson((fs::path(options.camera_result) / "result.json").string());
+    if (result->At("termination").AsString() != TerminationName(Termination::kConverged)) {
+      result->Fail("a camera calibration that did not converge",
+                   "its parameters and their covariance say nothing",
+                   "calibrate the camera again, or leave out --camera-result");
+    }
+    // A covariance belongs to the parameters that it was found with.
+    std::vector<Camera> calibrated = CameraChainFromValue(
+        ReadYaml((fs::path(options.camera_result) / "camchain.yaml").string()), warnings);
+    if (!known.chain.empty() && !AreTheSame(known.chain, calibrated)) {
+      warnings->push_back("--cameras and --camera-result differ: the cameras are taken from " +
+                          options.camera_result);
+    }
+    known.chain = std::move(calibrated);
   }
   for (size_t n = 0; n < known.chain.size(); ++n) {
     CameraImuCamera camera{known.chain[n].model, {}, IntrinsicsKnowledge::kExact, {}};
@@ -125,8 +165,9 @@ std::vector<Imu> ReadImus(const Options& options, const Recording& recording,
                           std::to_string(recording.imus.size()),
                       "give one a recorded IMU, in their order"});
   }
-  const ImuModelKind model = ImuModelFromName(options.imu_model);
-  for (Imu& imu : imus) imu.model = model;
+  if (!options.imu_model.empty()) {
+    for (Imu& imu : imus) imu.model = ImuModelFromName(options.imu_model);
+  }
   return imus;
 }
 
@@ -135,6 +176,7 @@ CameraImuProblem MakeProblem(KnownCameras* known, const std::vector<Imu>& imus,
                              const std::vector<CheckedImu>& checked, const Options& options) {
   CameraImuProblem problem;
   problem.gravity = options.gravity;
+  problem.estimate_line_delays = options.line_delay;
   problem.cameras = std::move(known->cameras);
   for (size_t n = 0; n < cameras.size(); ++n) problem.cameras[n].views = cameras[n].views;
   for (size_t n = 0; n < imus.size(); ++n) {
@@ -190,6 +232,31 @@ std::string TrajectoryCsv(const CameraImuState& state) {
   return text;
 }
 
+// What lies outside of the images' window is not judged either. Clocks that do not overlap are left
+// to the check of the recording.
+void CutToWindow(const std::vector<CheckedCamera>& cameras, const RecordingWindow& window,
+                 ImuRecording* imu) {
+  if (!window.from_s && !window.to_s) return;
+  std::optional<Time> begin;
+  std::optional<Time> end;
+  for (const CheckedCamera& camera : cameras) {
+    for (const BoardView& view : camera.views) {
+      if (!begin || view.stamp < *begin) begin = view.stamp;
+      if (!end || *end < view.stamp) end = view.stamp;
+    }
+  }
+  if (!begin) return;
+  // Time offsets are looked for within a second.
+  const Duration margin = Duration::FromSeconds(1.5);
+  const auto is_outside = [&](const VectorSample& sample) {
+    return sample.stamp < *begin - margin || *end + margin < sample.stamp;
+  };
+  ImuStream cut = imu->stream;
+  std::erase_if(cut.gyro, is_outside);
+  std::erase_if(cut.accel, is_outside);
+  if (!cut.gyro.empty() && !cut.accel.empty()) imu->stream = std::move(cut);
+}
+
 // A corner list without an image size has that of the camera chain.
 void CompleteResolutions(const KnownCameras& known, const Options& options, Recording* recording) {
   if (recording->cameras.size() != known.chain.size()) {
@@ -239,6 +306,7 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
   stopwatch.Start("detection_s");
   const std::vector<CheckedCamera> cameras =
       CheckableCameras(FindBoardViews(recording, board, options.window), known);
+  for (ImuRecording& imu : recording.imus) CutToWindow(cameras, options.window, &imu);
   stopwatch.Start("check_s");
   std::vector<CheckedImu> checked;
   for (size_t n = 0; n < imus.size(); ++n) checked.push_back({recording.imus[n], imus[n].noise});
@@ -290,12 +358,15 @@ Action SetUpCalibrateCameraImu(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--imu", options->imus, "The noise of the IMU: Kalibr's imu.yaml; once an IMU")
       ->required();
   app.add_option("--imu-model", options->imu_model,
-                 "calibrated, scale-misalignment or scale-misalignment-size-effect")
-      ->capture_default_str();
+                 "calibrated, scale-misalignment or scale-misalignment-size-effect; without it, "
+                 "the model that imu.yaml names, or calibrated");
   app.add_flag("--estimate-noise", options->estimate_noise,
                "Take the IMU's noise from its residuals, not from imu.yaml");
   app.add_flag("--joint-intrinsics", options->joint_intrinsics,
-               "Estimate the cameras' intrinsics as well, from this recording");
+               "Estimate the cameras' intrinsics as well, from this recording")
+      ->excludes("--camera-result");
+  app.add_flag("--line-delay", options->line_delay,
+               "Rolling shutters: estimate the time from one image row to the next");
   app.add_option("--max-iterations", options->max_iterations, "Of the solver")
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();

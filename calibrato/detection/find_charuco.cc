@@ -157,6 +157,14 @@ struct Reading {
   RejectionCounts rejected;
 };
 
+// Whether all four corners of a marker's square are inner corners of the board.
+bool AreInside(const Vote& vote, int rows, int columns) {
+  return std::all_of(vote.cell.places.begin(), vote.cell.places.end(), [&](const Place& place) {
+    const auto [row, column] = vote.placement.At(place[0], place[1]);
+    return row >= 0 && row < rows && column >= 0 && column < columns;
+  });
+}
+
 Reading Read(const GreyImage& image, const Charuco& board, int reduction) {
   const int rows = board.rows - 1;
   const int columns = board.columns - 1;
@@ -179,7 +187,13 @@ Reading Read(const GreyImage& image, const Charuco& board, int reduction) {
         std::max_element(counts.begin(), counts.end(),
                          [](const auto& a, const auto& b) { return a.second < b.second; });
     if (best == counts.end() || best->second < kMinVotes) continue;
-    if (5 * best->second < 4 * num_votes) {
+    // A marker in a border square of the target that has corners further out: the board in view is
+    // larger than the target says.
+    const bool is_larger =
+        std::any_of(markers.votes.begin(), markers.votes.end(), [&](const Vote& vote) {
+          return vote.placement == best->first && !AreInside(vote, rows, columns);
+        });
+    if (5 * best->second < 4 * num_votes || is_larger) {
       ++reading.rejected.images_with_other_layout;
       continue;
     }

@@ -168,6 +168,21 @@ std::optional<MarkerCode> ReadMarker(const GreyImage& image,
   if (!(white - black >= kMinContrast) || border[border.size() * 9 / 10] > threshold) {
     return std::nullopt;
   }
+  // Where a corner was mistaken, as for the far one of the small square that touches it, the bits
+  // may be right still, but two sides leave the black border: a quarter of its outermost ring is
+  // bright. Blur alone does not do so much.
+  std::vector<double> rim;
+  for (int k = 0; layout.border_modules > 1 && k + 1 < num_modules; ++k) {
+    const double along = layout.margin + (k + 0.5) * module;
+    const double near = layout.margin + 0.5 * module;
+    const double far = 1.0 - near;
+    for (const auto& [x, y] : {std::pair(along, near), std::pair(far, along),
+                               std::pair(1.0 - along, far), std::pair(near, 1.0 - along)}) {
+      rim.push_back(sampler.Mean(x, y, 0.2 * module));
+    }
+  }
+  std::sort(rim.begin(), rim.end());
+  if (!rim.empty() && rim[rim.size() * 5 / 6] > threshold) return std::nullopt;
   return std::accumulate(bits.begin(), bits.end(), MarkerCode{0},
                          [&](MarkerCode code, double brightness) {
                            return code << 1 | (brightness > threshold ? 1U : 0U);

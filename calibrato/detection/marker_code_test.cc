@@ -55,6 +55,20 @@ TEST(MarkerCode, IsReadInAllFourTurns) {
   }
 }
 
+// As the far corner of the small square that touches a tag of an AprilGrid: 0.3 of its side away.
+TEST(MarkerCode, IsNotReadWhereOneCornerIsMistaken) {
+  const GreyImage image = Draw("DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11, 17, 2);
+  const Eigen::Matrix<double, 2, 4> corners = CornersOf(image, 0);
+  EXPECT_TRUE(ReadMarker(image, corners, {6, 2, 0.0}));
+  const double gap = 0.3 * (corners(0, 1) - corners(0, 0));
+  for (int mistaken = 0; mistaken < 4; ++mistaken) {
+    Eigen::Matrix<double, 2, 4> wrong = corners;
+    wrong.col(mistaken) +=
+        gap * (corners.col(mistaken) - corners.col((mistaken + 2) % 4)).cwiseSign();
+    EXPECT_FALSE(ReadMarker(image, wrong, {6, 2, 0.0})) << mistaken;
+  }
+}
+
 TEST(MarkerCode, IsReadInsideAMargin) {
   const GreyImage image = Draw("DICT_APRILTAG_36h11", cv::aruco::DICT_APRILTAG_36h11, 17, 2);
   const double side = image.resolution.width;

@@ -1,8 +1,11 @@
 #include "calibrato/diagnosis/better_model.h"
 
 #include <map>
+#include <numeric>
 #include <string_view>
 #include <vector>
+
+#include "calibrato/calibration/camera_rig_calibration.h"
 
 namespace calibrato {
 namespace {
@@ -33,13 +36,21 @@ std::optional<BetterModel> FindBetterModel(const CameraProblem& problem,
   std::optional<BetterModel> best;
   double least = kWorthNaming * calibration.noise_stddev_px;
   for (const std::string_view name : successors->second) {
-    CameraProblem other;
+    CameraRigProblem rig;
+    CameraProblem& other = rig.cameras.emplace_back();
     other.model = name;
     other.resolution = problem.resolution;
     other.views = calibration.used_views;
     // The same corners for both: what does not fit counts.
     other.reject_outliers = false;
-    const CameraCalibration result = CalibrateCamera(other);
+    rig.frame_of_view.emplace_back(other.views.size());
+    std::iota(rig.frame_of_view[0].begin(), rig.frame_of_view[0].end(), 0);
+    // Where the board's bending was estimated, its points are bent.
+    for (BoardView& view : other.views) {
+      rig.estimate_bending = rig.estimate_bending || !view.points_g.row(2).isZero(0.0);
+      view.points_g.row(2).setZero();
+    }
+    const CameraCalibration result = CalibrateCameraRig(rig).cameras.front();
     if (result.termination == Termination::kConverged && result.noise_stddev_px < least) {
       best = BetterModel{std::string(name), result.noise_stddev_px};
       least = kBetterThanNext * result.noise_stddev_px;

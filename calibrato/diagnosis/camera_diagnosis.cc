@@ -100,7 +100,14 @@ void AddHalves(const CameraCalibration& calibration, const SplitCheck& split,
     }
   }
   const double chance = 4.0 / std::sqrt(static_cast<double>(split.degrees));
-  if (split.held_out_stddev_px > (kHeldOutWorse + chance) * split.expected_held_out_stddev_px) {
+  if (!std::isfinite(split.held_out_stddev_px)) {
+    findings->push_back({Severity::kWarn,
+                         "half of the views gives a lens that does not even see where the corners "
+                         "of the other half are",
+                         "take more views all over the image, or use a model with fewer "
+                         "parameters"});
+  } else if (!(split.held_out_stddev_px <=
+               (kHeldOutWorse + chance) * split.expected_held_out_stddev_px)) {
     findings->push_back(
         {Severity::kWarn,
          Format("half of the views predicts the other half badly: %.2f px where %.2f px were to "

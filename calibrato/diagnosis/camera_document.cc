@@ -66,7 +66,8 @@ Value DetectionRejectedValue(const RejectionCounts& counts) {
       .Set("tags_of_another_family", counts.tags_of_another_family)
       .Set("tags_seen_twice", counts.tags_seen_twice)
       .Set("images_with_two_boards", counts.images_with_two_boards)
-      .Set("images_with_mirrored_board", counts.images_with_mirrored_board);
+      .Set("images_with_mirrored_board", counts.images_with_mirrored_board)
+      .Set("images_with_other_layout", counts.images_with_other_layout);
   return value;
 }
 
@@ -166,25 +167,6 @@ std::vector<Finding> AllFindings(const CameraRigReport& report) {
     return static_cast<int>(a.severity) > static_cast<int>(b.severity);
   });
   return all;
-}
-
-// How far the lens moves a point, from the image's middle to its corner.
-Value DistortionCurve(const CameraModel& model, Resolution resolution) {
-  constexpr int kNumPoints = 60;
-  const Eigen::Vector4d k = model.focal_and_centre();
-  const Eigen::Vector2d corner(resolution.width - 1 - k(2), resolution.height - 1 - k(3));
-  Value radius = Value::Array();
-  Value shift = Value::Array();
-  for (int i = 0; i <= kNumPoints; ++i) {
-    const Eigen::Vector2d straight = corner * i / kNumPoints;
-    const auto pixel = model.Project({straight.x() / k(0), straight.y() / k(1), 1.0});
-    if (!pixel) break;
-    radius.Append(Rounded(straight.norm(), 1e-2));
-    shift.Append(Rounded((*pixel - k.tail<2>()).norm() - straight.norm(), 1e-3));
-  }
-  Value curve = Value::Object();
-  curve.Set("radius_px", std::move(radius)).Set("shift_px", std::move(shift));
-  return curve;
 }
 
 // "  left out: 3 corners; 1 view: left07.jpg (does not fit)"

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "calibrato/calibration/lens_twin.h"
+
 namespace calibrato {
 namespace {
 
@@ -77,6 +79,25 @@ std::optional<Eigen::Matrix2Xd> Straightened(const CameraModel& model,
 }
 
 }  // namespace
+
+Value DistortionCurve(const CameraModel& model, Resolution resolution) {
+  constexpr int kNumPoints = 60;
+  Eigen::Vector4d k = model.focal_and_centre();
+  k.head<2>() *= CentralFocalLength(model) / k(0);
+  const Eigen::Vector2d corner(resolution.width - 1 - k(2), resolution.height - 1 - k(3));
+  Value radius = Value::Array();
+  Value shift = Value::Array();
+  for (int i = 0; i <= kNumPoints; ++i) {
+    const Eigen::Vector2d straight = corner * i / kNumPoints;
+    const auto pixel = model.Project({straight.x() / k(0), straight.y() / k(1), 1.0});
+    if (!pixel) break;
+    radius.Append(std::round(1e2 * straight.norm()) / 1e2);
+    shift.Append(std::round(1e3 * ((*pixel - k.tail<2>()).norm() - straight.norm())) / 1e3);
+  }
+  Value curve = Value::Object();
+  curve.Set("radius_px", std::move(radius)).Set("shift_px", std::move(shift));
+  return curve;
+}
 
 Value LensCurve(const CameraModel& model, Resolution resolution) {
   constexpr int kNumPoints = 90;

@@ -11,6 +11,12 @@
 
 namespace calibrato {
 
+/// How far the lens moves a point, from the image's middle to its corner, beside a pinhole of the
+/// focal length [px/rad] that the lens has in its middle (with xi, fu is another): {"radius_px":
+/// [..], "shift_px": [..]}, the pinhole's distance from the principal point and how much farther
+/// out the lens sees the same direction. It ends where the lens sees no more.
+[[nodiscard]] Value DistortionCurve(const CameraModel& model, Resolution resolution);
+
 /// {"angle_rad": [..], "radius_px": [..]}: where a direction is seen, by its angle off the optical
 /// axis; from the principal point towards the image corner that is farthest from it, as far as
 /// pixels have rays.

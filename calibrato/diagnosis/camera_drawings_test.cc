@@ -38,6 +38,21 @@ std::vector<Eigen::Vector2d> Points(const Value& pairs) {
   return points;
 }
 
+// An omni lens of xi = 1 and gamma = 400 sees an angle at 400 sin / (cos + 1) = 400 tan(angle / 2):
+// its focal length in the middle is 200, where a pinhole sees the angle at 200 tan(angle).
+TEST(DistortionCurve, OfAnOmniLensBeginsWithThePinholeOfItsMiddle) {
+  const CameraModel omni("omni-none", (Eigen::VectorXd(5) << 1, 400, 400, 319.5, 239.5).finished());
+  const Value curve = DistortionCurve(omni, {640, 480});
+  const std::vector<double> radius = curve.At("radius_px").AsDoubles();
+  const std::vector<double> shift = curve.At("shift_px").AsDoubles();
+  ASSERT_EQ(radius.size(), 61U);
+  EXPECT_NEAR(radius.back(), std::hypot(319.5, 239.5), 1e-2);
+  for (size_t i = 0; i < radius.size(); ++i) {
+    const double angle = std::atan(radius[i] / 200.0);
+    EXPECT_NEAR(shift[i], 400.0 * std::tan(0.5 * angle) - radius[i], 2e-2) << i;
+  }
+}
+
 TEST(LensCurve, OfAnEquidistantLensIsALine) {
   const Value curve = LensCurve(Fisheye(), {640, 480});
   const std::vector<double> angles = curve.At("angle_rad").AsDoubles();

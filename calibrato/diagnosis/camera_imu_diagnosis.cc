@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "calibrato/calibration/camera_imu_layout.h"
+#include "calibrato/diagnosis/board_scale_check.h"
 
 namespace calibrato {
 namespace {
@@ -354,8 +355,15 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
     diagnosis.split = CheckSplit(problem, calibration, diagnosis.sigma_scale());
     JudgeSplit(&diagnosis);
     diagnosis.imu_models = CompareImuModels(problem, calibration, diagnosis.sigma_scale());
+  }
+  std::optional<BoardScaleCheck> board;
+  if (!problem.estimate_board_scale) board = CheckBoardScale(problem, calibration);
+  if (board) {
+    diagnosis.findings.push_back(BoardScaleFinding(*board));
+  } else if (diagnosis.imu_models) {
+    // A board of another size looks like scale errors of the IMU.
     const bool is_simple = problem.imus.front().model == ImuModelKind::kCalibrated;
-    if (diagnosis.imu_models) JudgeImuModel(*diagnosis.imu_models, is_simple, &diagnosis);
+    JudgeImuModel(*diagnosis.imu_models, is_simple, &diagnosis);
   }
   diagnosis.residuals = SummariseResiduals(problem, calibration);
   JudgeResiduals(*diagnosis.residuals, &diagnosis.findings);

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calibrato/calibration/camera_imu_layout.h"
 #include "calibrato/geometry/so3.h"
 #include "calibrato/sensors/camera_chain.h"
 #include "calibrato/sensors/imu_file.h"
@@ -57,6 +58,13 @@ Value CameraValue(const CameraImuReport& report, size_t n) {
     verdicts.Set("time_offset", VerdictName(parameters.time_offset->verdict));
   }
   value.Set("verdicts", std::move(verdicts));
+  if (report.problem.estimate_line_delays) {
+    const CameraImuLayout layout(report.problem, report.calibration.state->T_g_i.order());
+    const auto column = static_cast<size_t>(layout.cameras[n].line_delay);
+    value.Set("line_delay_s", camera.line_delay_s)
+        .Set("line_delay_sigma_s",
+             report.diagnosis.sigma_scale() * SigmasOf(report.calibration.information)[column]);
+  }
   if (report.diagnosis.split) {
     const CameraImuSplit::Camera& split = report.diagnosis.split->cameras[n];
     Value halves = Value::Object();
@@ -212,6 +220,9 @@ std::string EstimateText(const CameraImuReport& report) {
     for (int k = 0; k < 3; ++k) {
       text += Format("  translation %c  %s\n", kAxes[k],
                      WithSigma(camera.T_c_i.t(k), parameters.translation + k, 1e-3, "mm").c_str());
+    }
+    if (report.problem.estimate_line_delays) {
+      text += Format("  line delay     %.4f us\n", 1e6 * camera.line_delay_s);
     }
     text += Format("  time offset    %s\n",
                    WithSigma(camera.time_offset_s, parameters.time_offset, 1e-3, "ms").c_str());

@@ -27,6 +27,7 @@ struct CameraImuReport {
 ///      "cameras": [{"T_cam_imu": 4x4, "time_offset_s", "rotation_sigma_rad": [3],
 ///                   "translation_sigma_m": [3], "time_offset_sigma_s",
 ///                   "verdicts": {"rotation": [3], "translation": [3], "time_offset"},
+///                   "line_delay_s", "line_delay_sigma_s", with --line-delay,
 ///                   "split": {"difference_rad_m_s": [7], "sigma_rad_m_s": [7], "probability"},
 ///                   "reprojection_rms_px", "num_views", "num_corners", "num_outliers",
 ///                   "rejected_views": [names]}],

@@ -20,6 +20,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// Between a part and the whole [s].
+constexpr double kLargestOffsetOfParts = 0.05;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 bool HasAllSensors(const CameraImuProblem& problem) {
@@ -64,10 +66,23 @@ std::optional<std::vector<CameraImuCalibration>> CalibrateParts(
     const CameraImuProblem& problem, const CameraImuCalibration& calibration, int num_parts) {
   if (!calibration.state) return std::nullopt;
   const CameraImuState& state = *calibration.state;
-  const CameraImuProblem known = WithNoiseAsFound(problem, calibration);
+  CameraImuProblem known = WithNoiseAsFound(problem, calibration);
+  for (size_t n = 0; n < known.cameras.size(); ++n) {
+    CameraImuCamera& camera = known.cameras[n];
+    // What is known of a lens from elsewhere is common to all parts, and no part's own.
+    if (camera.intrinsics == IntrinsicsKnowledge::kPrior) {
+      camera.intrinsics = IntrinsicsKnowledge::kExact;
+      camera.model = state.cameras[n].model;
+    }
+    // On the clock of IMU 0, so that a short part looks for its offset where the whole found it.
+    for (BoardView& view : camera.views) {
+      view.stamp = view.stamp + Duration::FromSeconds(state.cameras[n].time_offset_s);
+    }
+  }
   CameraImuOptions options;
   options.spline_order = state.T_g_i.order();
   options.knot_spacing_s = calibration.knot_spacing_s;
+  options.max_time_offset_s = kLargestOffsetOfParts;
   const int64_t duration = (EndOf(state) - state.start).nanoseconds();
   const auto edge = [&](int k) {
     return state.start + Duration::FromNanoseconds(duration / num_parts * k);
@@ -110,8 +125,8 @@ double CameraImuScatter::sigma_scale() const {
 }
 
 ImuNoise NoiseAsFound(ImuNoise noise, const CameraImuWeights::Imu& weights) {
-  noise.gyro_noise_density = weights.gyro_stddev / std::sqrt(noise.rate_hz);
-  noise.accel_noise_density = weights.accel_stddev / std::sqrt(noise.rate_hz);
+  noise.gyro_noise_density = weights.gyro_stddev / std::sqrt(weights.gyro_rate_hz);
+  noise.accel_noise_density = weights.accel_stddev / std::sqrt(weights.accel_rate_hz);
   return noise;
 }
 
@@ -137,13 +152,14 @@ std::optional<CameraImuScatter> ScatterOfParts(const CameraImuProblem& problem,
   CameraImuScatter scatter;
   scatter.num_parts = num_parts;
   scatter.ratio = 0.0;
+  const auto num_cameras = static_cast<double>(problem.cameras.size());
   for (size_t n = 0; n < problem.cameras.size(); ++n) {
     std::vector<MatrixXd> weights;
     std::vector<VectorXd> differences;
     MatrixXd sum_of_weights;
     VectorXd weighted_sum;
     for (const CameraImuCalibration& part : *parts) {
-      differences.push_back(DifferenceOf(part, calibration, problem, n));
+      differences.push_back(DifferenceOf(part, parts->front(), problem, n));
       weights.push_back(CovarianceOf(part, problem, n).inverse());
       if (weights.size() == 1) {
         sum_of_weights = MatrixXd::Zero(weights[0].rows(), weights[0].cols());
@@ -158,8 +174,9 @@ std::optional<CameraImuScatter> ScatterOfParts(const CameraImuProblem& problem,
       squared += (differences[k] - mean).dot(weights[k] * (differences[k] - mean));
     }
     const auto degrees = static_cast<double>((num_parts - 1) * mean.size());
-    scatter.ratio += squared / degrees / static_cast<double>(problem.cameras.size());
-    scatter.probability = std::min(scatter.probability, ChiSquareTail(squared, degrees));
+    scatter.ratio = std::max(scatter.ratio, squared / degrees);
+    scatter.probability =
+        std::min(scatter.probability, num_cameras * ChiSquareTail(squared, degrees));
   }
   return scatter;
 }

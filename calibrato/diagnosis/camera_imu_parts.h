@@ -26,9 +26,10 @@ namespace calibrato {
 struct CameraImuScatter {
   int num_parts = 0;
   /// Squared distances of T_c_i and time offset to their mean over the parts, in their covariances,
-  /// over their degrees of freedom; the mean over cameras. 1 where covariances tell the truth.
+  /// over their degrees of freedom, of the camera where it is largest. 1 where covariances tell the
+  /// truth.
   double ratio = 1.0;
-  double probability = 1.0;  ///< That chance alone makes a camera's as large.
+  double probability = 1.0;  ///< At most: that chance alone makes one camera's as large.
   /// By how much standard deviations are to be multiplied: sqrt(ratio) where that is significantly
   /// more than 1 (Birge, "The calculation of errors by the method of least squares", Physical
   /// Review 40, 1932), else 1. What all parts have in common no part shows.

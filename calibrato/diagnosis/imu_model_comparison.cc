@@ -37,6 +37,8 @@ std::vector<Eigen::Vector<double, 6>> PosesIn(const VectorXd& border,
 // One step with further parameters, from where the simple model ended.
 std::optional<ImuModelComparison> ByScore(CameraImuProblem problem,
                                           const CameraImuCalibration& simple, double sigma_scale) {
+  // Its columns are those of the simple model.
+  if (problem.prior) return std::nullopt;
   for (CameraImuImu& imu : problem.imus) imu.model = ImuModelKind::kScaleMisalignment;
   const CameraImuState& state = *simple.state;
   const CameraImuLayout layout(problem, state.T_g_i.order());

@@ -24,7 +24,8 @@ struct ImuModelComparison {
 /// with the further parameters promises (Rao's score test); else by what the estimates of those
 /// parameters say against the values of a perfect IMU (Wald's test).
 /// @param sigma_scale  By which standard deviations are multiplied (CameraImuScatter).
-/// @return nothing where the motion does not determine the parameters.
+/// @return nothing where the motion does not determine the parameters, or where a prior of the
+/// simple model takes part.
 [[nodiscard]] std::optional<ImuModelComparison> CompareImuModels(
     const CameraImuProblem& problem, const CameraImuCalibration& calibration, double sigma_scale);
 

@@ -19,7 +19,8 @@ constexpr double kLargeError = 3.0;                             // Over the medi
 constexpr double kBlurred = 1.3;                                // Fast over slow views' noise [-].
 constexpr size_t kNamesToList = 3;
 
-std::string Percent(double share) { return Format("%.0f %%", 100.0 * share); }
+// Rounded down: 100 % is not less than wanted.
+std::string Percent(double share) { return Format("%.0f %%", std::floor(100.0 * share)); }
 
 // Of the board's normal against the line of sight to its middle [rad].
 double Tilt(const BoardView& view, const Rigid3& T_c_g) {

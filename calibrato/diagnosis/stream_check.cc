@@ -1,5 +1,6 @@
 #include "calibrato/diagnosis/stream_check.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,6 +19,8 @@ constexpr double kMaxOffset = 0.1;  // [s]
 constexpr double kSureCorrelation = 0.8;
 constexpr double kNoCorrelation = 0.4;
 constexpr double kUnitTolerance = 0.2;
+constexpr double kNoTurn = 0.01;       // Of an axis [rad/s], root mean square.
+constexpr double kNoMotion = 0.05;     // Of the specific force [m/s^2], likewise.
 constexpr double kFastestHand = 10.0;  // Median rate [rad/s] that no hand holds.
 
 bool IsNear(double value, double expected) {
@@ -52,6 +55,9 @@ class Findings {
   explicit Findings(std::vector<Finding>* findings) : findings_(findings) {}
   void Fail(const std::string& what, const std::string& remedy) {
     findings_->push_back({Severity::kFail, what, remedy});
+  }
+  void Inconclusive(const std::string& what, const std::string& remedy) {
+    findings_->push_back({Severity::kInconclusive, what, remedy});
   }
   void Warn(const std::string& what, const std::string& remedy) {
     findings_->push_back({Severity::kWarn, what, remedy});
@@ -98,7 +104,7 @@ void CheckSamples(const std::string& sensor, const StreamDefects& defects, const
       findings->Warn(
           name + ": " + share(defects.num_saturated[axis]) +
               Format(" stand at the end of its range, %.4g %s", defects.saturated_at[axis], unit),
-          "move more gently there, or set the sensor to a wider range");
+          "they are left out; move more gently there, or set the sensor to a wider range");
     }
   }
 }
@@ -163,6 +169,58 @@ bool CheckSizes(const std::string& name, const ImuStream& stream, Findings* find
     findings->Fail(what, "check the accelerometer's unit and range; it should be in m/s^2");
   }
   return true;
+}
+
+// How samples vary about their mean, less white noise, which shows in the differences of
+// neighbours: of motion, those are small.
+Eigen::Matrix3d VariationOf(const std::vector<VectorSample>& samples) {
+  const auto n = static_cast<double>(samples.size());
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const VectorSample& sample : samples) mean += sample.value / n;
+  Eigen::Matrix3d variation = Eigen::Matrix3d::Zero();
+  for (size_t k = 0; k < samples.size(); ++k) {
+    const Eigen::Vector3d from_mean = samples[k].value - mean;
+    variation += from_mean * from_mean.transpose() / n;
+    if (k == 0) continue;
+    const Eigen::Vector3d change = samples[k].value - samples[k - 1].value;
+    variation -= change * change.transpose() / (2.0 * (n - 1.0));
+  }
+  return variation;
+}
+
+// Whether the rig turned, and about more than one axis: of its rates the bias is left out.
+void CheckMotion(const std::string& name, const ImuStream& stream, Findings* findings) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> turning(VariationOf(stream.gyro));
+  const Eigen::Vector3d rates = turning.eigenvalues().cwiseMax(0.0).cwiseSqrt();  // Ascending.
+  const std::string remedy =
+      "turn the rig to and fro about all three axes, by 20 degrees and more and about once a "
+      "second, with the board in view";
+  if (!(rates(2) >= kNoTurn)) {
+    const double forces = std::sqrt(std::max(0.0, VariationOf(stream.accel).trace()));
+    findings->Fail(
+        !(forces >= kNoMotion)
+            ? name + Format(" did not move: its rates vary by %.2g rad/s and its forces by %.2g "
+                            "m/s^2",
+                            rates(2), forces)
+            : name + Format(" moved but did not turn: its rates vary by %.2g rad/s; without "
+                            "rotation nothing shows how the sensors are mounted to each other",
+                            rates(2)),
+        remedy);
+  } else if (!(rates(1) >= kNoTurn)) {
+    Eigen::Vector3d axis = turning.eigenvectors().col(2);
+    Eigen::Index largest = 0;
+    axis.cwiseAbs().maxCoeff(&largest);
+    if (axis(largest) < 0.0) axis = -axis;
+    // Adding zero makes a zero of a negative one.
+    axis = (axis * 100.0).array().round() / 100.0 + 0.0;
+    findings->Inconclusive(
+        name +
+            Format(" turned about one axis only, [%.2g %.2g %.2g] in its frame (%.2g rad/s about "
+                   "it, %.2g at right angles): the rotation about it and the translation along "
+                   "it do not show",
+                   axis.x(), axis.y(), axis.z(), rates(2), rates(1)),
+        remedy);
+  }
 }
 
 // Against the board's motion, where it can be had.
@@ -234,13 +292,17 @@ void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, Findings* find
     CheckRate(name + " accelerometer", accel, imu.noise->rate_hz, findings);
   }
   const bool columns_are_right = CheckSizes(name, stream, findings);
+  if (columns_are_right) CheckMotion(name, stream, findings);
   if (camera == nullptr || camera->views.size() < 2) return;
   const Span views{camera->views.front().stamp, camera->views.back().stamp};
   for (const auto& [sensor, samples] :
        {std::pair(" gyroscope", &stream.gyro), std::pair(" accelerometer", &stream.accel)}) {
     CheckOverlap(camera->name, views, name + sensor, SpanOf(*samples), findings);
   }
-  if (columns_are_right) CheckSpeeds(*camera, name, stream.gyro, findings);
+  // Without its fastest samples a gyroscope seems slower than it is.
+  const bool is_saturated =
+      gyro.num_saturated[0] + gyro.num_saturated[1] + gyro.num_saturated[2] > 0;
+  if (columns_are_right && !is_saturated) CheckSpeeds(*camera, name, stream.gyro, findings);
 }
 
 }  // namespace

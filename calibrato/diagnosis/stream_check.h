@@ -30,9 +30,10 @@ struct CheckedImu {
 ///
 /// - fail: the solve can't be right. Fewer than ten views; a sensor without samples; clocks whose
 ///   times have no part in common; gyroscope in deg/s; accelerometer in g, without gravity or of
-///   another size; columns of the two swapped.
+///   another size; columns of the two swapped; a rig that did not move, or did not turn.
+/// - inconclusive: the solve leaves something open. A rig that turned about one axis only.
 /// - warn: the solve runs, on less or on worse. Samples that are not finite, stamps out of order or
-///   twice, gaps (`Mended` deals with them); saturation; an axis that never changes; a rate more
+///   twice, gaps, saturation (`Mended` deals with them); an axis that never changes; a rate more
 ///   than 10 % off the YAML's; a camera seen in part only by the IMU; clocks more than 0.1 s apart;
 ///   speeds of camera and gyroscope that do not fit together.
 ///

@@ -23,8 +23,8 @@ using Eigen::Vector3d;
 using testing::AllOf;
 using testing::HasSubstr;
 
-// A camera that nods before a board for 20 s at 20 Hz, with an IMU of 200 Hz on it: rates in closed
-// form, force that of gravity as it turns.
+// A camera that nods and sways before a board for 20 s at 20 Hz, with an IMU of 200 Hz on it: rates
+// in closed form, force that of gravity as it turns.
 class CheckStreamsTest : public testing::Test {
  protected:
   CheckStreamsTest() {
@@ -53,7 +53,7 @@ class CheckStreamsTest : public testing::Test {
       const double t_s = 0.005 * k;
       const auto noise = [&] { return Vector3d(rng.Normal(), rng.Normal(), rng.Normal()); };
       const Time stamp = kStart + Duration::FromSeconds(t_s);
-      gyro().push_back({stamp, R_i_c * (-kAxis * Rate(t_s)) + 1e-3 * noise()});
+      gyro().push_back({stamp, -R_i_c * TurningOfBoard(t_s) + 1e-3 * noise()});
       accel().push_back(
           {stamp, R_i_c * R_c_g(t_s) * Vector3d(0.0, 0.0, kStandardGravity) + 1e-2 * noise()});
     }
@@ -63,8 +63,14 @@ class CheckStreamsTest : public testing::Test {
   static double Rate(double t_s) {
     return 0.52 * std::cos(1.3 * t_s) + 0.615 * std::cos(4.1 * t_s);
   }
+  static double Sway(double t_s) { return 0.2 * std::sin(2.3 * t_s + 0.5); }
+  static double SwayRate(double t_s) { return 0.46 * std::cos(2.3 * t_s + 0.5); }
   static Eigen::Matrix3d R_c_g(double t_s) {
-    return ExpSo3(kAxis * Angle(t_s)) * ExpSo3({0.3, 0.2, 0.1});
+    return ExpSo3(kAxis * Angle(t_s)) * ExpSo3(kOther * Sway(t_s)) * ExpSo3({0.3, 0.2, 0.1});
+  }
+  // Angular velocity of the board in the camera.
+  static Vector3d TurningOfBoard(double t_s) {
+    return kAxis * Rate(t_s) + ExpSo3(kAxis * Angle(t_s)) * kOther * SwayRate(t_s);
   }
 
   std::vector<VectorSample>& gyro() { return imu_.recording.stream.gyro; }
@@ -94,6 +100,7 @@ class CheckStreamsTest : public testing::Test {
 
   static inline const Time kStart = Time::FromNanoseconds(1'600'000'000'000'000'000);
   static inline const Vector3d kAxis = Vector3d(0.6, 0.0, 0.8);
+  static inline const Vector3d kOther = Vector3d(0.0, 1.0, 0.0);
   CheckedCamera camera_;
   CheckedImu imu_;
 };
@@ -210,10 +217,34 @@ TEST_F(CheckStreamsTest, KnowsWhatDoesNotMoveTogether) {
   Rng rng(2);
   for (VectorSample& sample : gyro()) {
     const double t_s = (sample.stamp - kStart).seconds();
-    sample.value = Vector3d(1.0 + std::sin(7.3 * t_s + std::sin(0.7 * t_s)), 0.1, 0.2) +
+    sample.value = Vector3d(1.0 + std::sin(7.3 * t_s + std::sin(0.7 * t_s)),
+                            0.1 + 0.1 * std::sin(8.1 * t_s), 0.2) +
                    1e-3 * Vector3d(rng.Normal(), rng.Normal(), rng.Normal());
   }
   ExpectOnly(Severity::kWarn, "do not turn at the same times", "one rigid body");
+}
+
+TEST_F(CheckStreamsTest, KnowsARigThatDidNotMove) {
+  camera_.model.reset();
+  Rng rng(4);
+  const auto noise = [&] { return Vector3d(rng.Normal(), rng.Normal(), rng.Normal()); };
+  for (VectorSample& sample : gyro()) sample.value = Vector3d(0.1, 0.0, 0.2) + 5e-3 * noise();
+  std::vector<VectorSample> swinging = accel();
+  for (VectorSample& sample : accel()) sample.value = Vector3d(0.0, 9.8, 0.0) + 0.1 * noise();
+  ExpectOnly(Severity::kFail, "imu0 did not move: its rates vary by ", "about all three axes");
+  accel() = swinging;
+  ExpectOnly(Severity::kFail, "imu0 moved but did not turn: its rates vary by ", "turn the rig");
+}
+
+TEST_F(CheckStreamsTest, KnowsARigThatTurnedAboutOneAxis) {
+  camera_.model.reset();
+  Rng rng(5);
+  for (VectorSample& sample : gyro()) {
+    sample.value = Vector3d(0.05, 0.02 - Rate((sample.stamp - kStart).seconds()), 0.0) +
+                   5e-3 * Vector3d(rng.Normal(), rng.Normal(), rng.Normal());
+  }
+  ExpectOnly(Severity::kInconclusive, "imu0 turned about one axis only, [0 1 0] in its frame",
+             "about all three axes");
 }
 
 TEST_F(CheckStreamsTest, WantsTenViewsAndSomeSamples) {

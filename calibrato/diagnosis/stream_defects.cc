@@ -21,22 +21,58 @@ size_t HeapedUpAtFront(Iterator begin, Iterator end) {
   const auto num_first = static_cast<size_t>(next - begin);
   const auto num_second =
       static_cast<size_t>(std::find_if(next, end, [&](double x) { return x != *next; }) - next);
-  return num_first >= kMinRepetitions * num_second ? num_first : 0;
+  // Where most samples stand is where the sensor rests, coarsely rounded, not the end of its range.
+  const bool is_rest = 2 * num_first > static_cast<size_t>(end - begin);
+  return num_first >= kMinRepetitions * num_second && !is_rest ? num_first : 0;
 }
 
-void FindSaturation(const std::vector<VectorSample>& mended, int axis, StreamDefects* defects) {
+// The ends of one axis's range, where samples heap up at them.
+struct RangeEnds {
+  size_t num_low = 0;
+  size_t num_high = 0;
+  double lowest = 0.0;
+  double highest = 0.0;
+  bool is_constant = false;
+
+  bool Has(double value) const {
+    return (num_low > 0 && value == lowest) || (num_high > 0 && value == highest);
+  }
+};
+
+RangeEnds FindRangeEnds(const std::vector<VectorSample>& samples, int axis) {
   std::vector<double> values;
-  values.reserve(mended.size());
-  for (const VectorSample& sample : mended) values.push_back(sample.value(axis));
+  values.reserve(samples.size());
+  for (const VectorSample& sample : samples) values.push_back(sample.value(axis));
   std::sort(values.begin(), values.end());
-  if (values.size() < kMinRepetitions) return;
-  defects->is_constant[axis] = values.front() == values.back();
-  const size_t low = HeapedUpAtFront(values.begin(), values.end());
-  const size_t high = HeapedUpAtFront(values.rbegin(), values.rend());
-  defects->num_saturated[axis] = low + high;
-  const double lowest = low > 0 ? values.front() : 0.0;
-  const double highest = high > 0 ? values.back() : 0.0;
+  if (values.size() < kMinRepetitions) return {};
+  return {HeapedUpAtFront(values.begin(), values.end()),
+          HeapedUpAtFront(values.rbegin(), values.rend()), values.front(), values.back(),
+          values.front() == values.back()};
+}
+
+void FindSaturation(const std::vector<VectorSample>& samples, int axis, StreamDefects* defects) {
+  const RangeEnds ends = FindRangeEnds(samples, axis);
+  defects->is_constant[axis] = ends.is_constant;
+  defects->num_saturated[axis] = ends.num_low + ends.num_high;
+  const double lowest = ends.num_low > 0 ? ends.lowest : 0.0;
+  const double highest = ends.num_high > 0 ? ends.highest : 0.0;
   defects->saturated_at[axis] = std::abs(lowest) > std::abs(highest) ? lowest : highest;
+}
+
+// Finite, ascending, of twins the first.
+std::vector<VectorSample> InOrder(const std::vector<VectorSample>& samples) {
+  std::vector<VectorSample> ordered;
+  ordered.reserve(samples.size());
+  for (const VectorSample& sample : samples) {
+    if (sample.value.allFinite()) ordered.push_back(sample);
+  }
+  std::stable_sort(ordered.begin(), ordered.end(),
+                   [](const VectorSample& a, const VectorSample& b) { return a.stamp < b.stamp; });
+  const auto twins =
+      std::unique(ordered.begin(), ordered.end(),
+                  [](const VectorSample& a, const VectorSample& b) { return a.stamp == b.stamp; });
+  ordered.erase(twins, ordered.end());
+  return ordered;
 }
 
 }  // namespace
@@ -48,7 +84,7 @@ StreamDefects FindDefects(const std::vector<VectorSample>& samples) {
     if (!samples[k].value.allFinite()) ++defects.num_not_finite;
     if (k > 0 && samples[k].stamp < samples[k - 1].stamp) ++defects.num_out_of_order;
   }
-  const std::vector<VectorSample> mended = Mended(samples);
+  const std::vector<VectorSample> mended = InOrder(samples);
   defects.num_duplicates = samples.size() - defects.num_not_finite - mended.size();
   std::vector<double> periods_s;
   for (size_t k = 1; k < mended.size(); ++k) {
@@ -67,17 +103,13 @@ StreamDefects FindDefects(const std::vector<VectorSample>& samples) {
 }
 
 std::vector<VectorSample> Mended(const std::vector<VectorSample>& samples) {
-  std::vector<VectorSample> mended;
-  mended.reserve(samples.size());
-  for (const VectorSample& sample : samples) {
-    if (sample.value.allFinite()) mended.push_back(sample);
-  }
-  std::stable_sort(mended.begin(), mended.end(),
-                   [](const VectorSample& a, const VectorSample& b) { return a.stamp < b.stamp; });
-  const auto twins =
-      std::unique(mended.begin(), mended.end(),
-                  [](const VectorSample& a, const VectorSample& b) { return a.stamp == b.stamp; });
-  mended.erase(twins, mended.end());
+  std::vector<VectorSample> mended = InOrder(samples);
+  const std::array<RangeEnds, 3> ends = {FindRangeEnds(mended, 0), FindRangeEnds(mended, 1),
+                                         FindRangeEnds(mended, 2)};
+  std::erase_if(mended, [&](const VectorSample& sample) {
+    return ends[0].Has(sample.value.x()) || ends[1].Has(sample.value.y()) ||
+           ends[2].Has(sample.value.z());
+  });
   return mended;
 }
 

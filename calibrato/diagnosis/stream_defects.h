@@ -20,14 +20,16 @@ struct StreamDefects {
   double longest_gap_s = 0.0;    ///< ... the longest of them [s] ...
   Time longest_gap_begin;        ///< ... and where it begins.
   /// Of each axis: samples that stand at its highest or lowest value, if that looks like the end of
-  /// the sensor's range: at least five, and five times as many as at the value next to it; else 0.
+  /// the sensor's range: at least five, five times as many as at the value next to it, and not the
+  /// most of all; else 0.
   std::array<size_t, 3> num_saturated{};
   std::array<double, 3> saturated_at{};  ///< The larger in size of the two ends that were found.
   std::array<bool, 3> is_constant{};     ///< Every sample is the same, of at least five.
 };
 [[nodiscard]] StreamDefects FindDefects(const std::vector<VectorSample>& samples);
 
-/// The samples as an estimator wants them: finite, ascending, of twins the one that came first.
+/// The samples as an estimator wants them: finite, ascending, of twins the one that came first, and
+/// none of which an axis stands at the end of the sensor's range.
 [[nodiscard]] std::vector<VectorSample> Mended(const std::vector<VectorSample>& samples);
 [[nodiscard]] ImuStream Mended(const ImuStream& stream);
 

@@ -79,6 +79,30 @@ TEST(FindDefects, RoundedSwingsAreNotSaturated) {
   EXPECT_EQ(NumSaturated(FindDefects(samples)), 0U);
 }
 
+TEST(FindDefects, ASensorAtRestIsNotSaturated) {
+  std::vector<VectorSample> samples = Swing();
+  for (VectorSample& sample : samples) {
+    for (double& x : sample.value) x = x > 0.99 ? 1.0 : 0.0;
+  }
+  EXPECT_EQ(NumSaturated(FindDefects(samples)), 0U);
+  EXPECT_EQ(Mended(samples).size(), samples.size());
+}
+
+TEST(Mended, LeavesOutWhatStandsAtTheEndOfTheRange) {
+  std::vector<VectorSample> samples = Swing();
+  for (VectorSample& sample : samples) {
+    sample.value.x() = std::clamp(sample.value.x(), -0.9, 0.8);
+  }
+  const StreamDefects defects = FindDefects(samples);
+  ASSERT_GT(defects.num_saturated[0], 100U);
+  const std::vector<VectorSample> mended = Mended(samples);
+  EXPECT_EQ(mended.size(), samples.size() - defects.num_saturated[0]);
+  for (const VectorSample& sample : mended) {
+    EXPECT_GT(sample.value.x(), -0.9);
+    EXPECT_LT(sample.value.x(), 0.8);
+  }
+}
+
 TEST(Mended, IsFiniteAndAscending) {
   std::vector<VectorSample> samples = Swing();
   samples[10].value.y() = std::numeric_limits<double>::quiet_NaN();

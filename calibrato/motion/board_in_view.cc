@@ -33,7 +33,7 @@ std::optional<Refusal> CheckBoardInView(const Rigid3& T_b_e, const Rig& rig) {
   Refusal refusal;
   refusal.limit = "board in view";
   const std::optional<Eigen::Vector2d> pixel = camera.model.Project(centre_c0);
-  if (!(centre_c0.z() > 0.0) || !pixel) {
+  if (!pixel) {
     refusal.value = AngleOffAxis(centre_c0);
     refusal.bound = LargestAngleInImage(camera);
     refusal.unit = "rad";

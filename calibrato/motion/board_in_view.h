@@ -6,7 +6,8 @@
 
 namespace calibrato {
 
-/// The centre of the rig's board must lie in front of camera 0 and inside its image.
+/// The centre of the rig's board must lie inside the image of camera 0. Wide lenses see points
+/// beside and behind the camera too.
 ///
 /// @return  Nothing if it does, else the refusal's limit, value, bound and unit: the pixel
 /// coordinate beyond the image's edge, or, where the lens can't see the centre at all, its angle

@@ -7,6 +7,7 @@
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/so3.h"
+#include "calibrato/motion/board_in_view.h"
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
@@ -102,6 +103,25 @@ TEST(FreeCarrier, RefusesByReachHeightAndViewAndNamesTheFirstWayPoint) {
 
   const auto behind = PlanMotion(OneLoop(30, -1.5), rig);  // yaw by up to 3 rad
   EXPECT_EQ(std::get<Refusal>(behind).limit, "board in view");
+}
+
+TEST(CheckBoardInView, AWideLensMaySeeTheBoardBesideAndBehindIt) {
+  const Motion motion = OneLoop(0, 0.0);
+  const Rigid3 T_b_e = LoopPoseAt(motion.base_pose, motion.loops[0].coefficients, 0.0);
+  const Rig pinhole = PaperRig();
+  Rig fisheye = pinhole;
+  fisheye.cameras[0].model = CameraModel(
+      "pinhole-equi", (Eigen::VectorXd(8) << 120, 120, 319.5, 239.5, 0, 0, 0, 0).finished());
+  EXPECT_FALSE(CheckBoardInView(T_b_e, pinhole));
+  EXPECT_FALSE(CheckBoardInView(T_b_e, fisheye));
+  // The camera turned away about its y axis by 1.75 rad: 120 * 1.75 = 210 px from the middle.
+  const Rigid3 turn(ExpSo3(Eigen::Vector3d(0.0, 1.75, 0.0)), Eigen::Vector3d::Zero());
+  const Rigid3 away = T_b_e * pinhole.T_e_c0 * turn * pinhole.T_e_c0.Inverse();
+  EXPECT_FALSE(CheckBoardInView(away, fisheye));
+  const auto refusal = CheckBoardInView(away, pinhole);
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->unit, "rad");
+  EXPECT_NEAR(refusal->value, 1.75, 0.1);
 }
 
 TEST(FreeCarrier, RefusesNotANumber) {
