@@ -403,7 +403,6 @@ class BlockLinearisation {
       }
       if (num_scale > 0) {
         J_pose.bottomRows<3>().leftCols(column) /= state_.board_scale;
-        J_pose.col(column).head<3>().setZero();
         J_pose.col(column).tail<3>() = -T_seen.t / state_.board_scale;
       }
 

@@ -107,7 +107,8 @@ struct Whole {
                      {problem.cameras[1].model, {truth.T_c_i[0].R, {-0.05, 0.01, 0.02}}, -0.011}};
     const std::vector<ImuBias> biases(static_cast<size_t>(state.num_blocks()),
                                       {truth.gyro_bias, truth.accel_bias});
-    state.imus = {{{}, {}, 0.0, biases}, {{}, {{}, {0.1, 0.02, -0.05}}, 0.004, biases}};
+    state.imus = {{{}, {}, 0.0, biases},
+                  {{}, {Eigen::Matrix3d::Identity(), {0.1, 0.02, -0.05}}, 0.004, biases}};
     return state;
   }
 
