@@ -55,6 +55,29 @@ std::vector<std::vector<Entry>> EntriesOf(const Recording& recording, bool* is_s
   return entries;
 }
 
+// One frame in so many of those that several cameras share, and of each camera's own. Counted
+// together, cameras that take turns would lose one of them altogether.
+std::vector<std::vector<bool>> Thinned(const std::vector<std::vector<Entry>>& entries, int every) {
+  std::map<int, int> num_cameras;
+  for (const auto& camera : entries) {
+    for (const Entry& entry : camera) ++num_cameras[entry.frame];
+  }
+  std::map<int, int> place;  // Of a shared frame among those.
+  for (const auto& [frame, count] : num_cameras) {
+    if (count > 1) place.emplace(frame, static_cast<int>(place.size()));
+  }
+  std::vector<std::vector<bool>> kept;
+  for (const auto& camera : entries) {
+    int own = 0;
+    auto& of_camera = kept.emplace_back();
+    for (const Entry& entry : camera) {
+      const auto shared = place.find(entry.frame);
+      of_camera.push_back((shared != place.end() ? shared->second : own++) % every == 0);
+    }
+  }
+  return kept;
+}
+
 // Which images lie in the window.
 std::vector<std::vector<bool>> Inside(const std::vector<std::vector<Entry>>& entries,
                                       bool is_stamped, const std::string& path,
@@ -71,12 +94,13 @@ std::vector<std::vector<bool>> Inside(const std::vector<std::vector<Entry>>& ent
   for (const auto& camera : entries) {
     if (!camera.empty()) first = std::min(first, camera.front().stamp);
   }
+  const std::vector<std::vector<bool>> thinned = Thinned(entries, window.every);
   std::vector<std::vector<bool>> inside(entries.size());
   bool any = false;
   for (size_t c = 0; c < entries.size(); ++c) {
-    for (const Entry& entry : entries[c]) {
-      const double time = (entry.stamp - first).seconds();
-      inside[c].push_back(entry.frame % window.every == 0 && !(window.from_s > time) &&
+    for (size_t k = 0; k < entries[c].size(); ++k) {
+      const double time = (entries[c][k].stamp - first).seconds();
+      inside[c].push_back(thinned[c][k] && !(window.from_s > time) &&
                           !(window.to_s && *window.to_s < time));
       any = any || inside[c].back();
     }

@@ -311,7 +311,7 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
   std::vector<CheckedImu> checked;
   for (size_t n = 0; n < imus.size(); ++n) checked.push_back({recording.imus[n], imus[n].noise});
   CameraImuReport report;
-  report.findings = CheckStreams(cameras, checked);
+  report.findings = CheckStreams(cameras, checked, options.gravity);
 
   // A solve that can't be right is not tried: what is wrong with the recording says more.
   if (VerdictOf(report.findings) != Verdict::kFail) {

@@ -15,7 +15,8 @@ namespace {
 constexpr size_t kMinViews = 10;
 constexpr double kMaxRateError = 0.1;
 constexpr double kMinOverlap = 0.9;
-constexpr double kMaxOffset = 0.1;  // [s]
+constexpr double kMaxOffset = 0.1;      // [s]
+constexpr double kLongestPause = 10.0;  // [s]
 constexpr double kSureCorrelation = 0.8;
 constexpr double kNoCorrelation = 0.4;
 constexpr double kUnitTolerance = 0.2;
@@ -142,10 +143,11 @@ void CheckOverlap(const std::string& camera_name, const Span& camera, const std:
 }
 
 // Sizes alone, of one IMU. @return False if its columns are swapped.
-bool CheckSizes(const std::string& name, const ImuStream& stream, Findings* findings) {
+bool CheckSizes(const std::string& name, const ImuStream& stream, double gravity,
+                Findings* findings) {
   const double rate = MedianNorm(stream.gyro);
   const double force = MedianNorm(stream.accel);
-  if (IsNear(rate, kStandardGravity) && force < 0.5 * kStandardGravity) {
+  if (IsNear(rate, gravity) && force < 0.5 * gravity) {
     findings->Fail(name + Format(": the gyroscope's columns read %.3g, as gravity does, and the "
                                  "accelerometer's %.3g",
                                  rate, force),
@@ -154,18 +156,18 @@ bool CheckSizes(const std::string& name, const ImuStream& stream, Findings* find
     return false;
   }
   const std::string what =
-      name + Format(": the specific force is %.4g m/s^2 (median), gravity is %.4g", force,
-                    kStandardGravity);
+      name + Format(": the specific force is %.4g m/s^2 (median), gravity is %.4g", force, gravity);
+  if (IsNear(force, gravity)) return true;
   if (IsNear(force, 1.0)) {
     findings->Fail(what + ": it is in g", "multiply the accelerometer's columns by 9.80665");
   } else if (IsNear(force, 1000.0)) {
     findings->Fail(what + ": it is in thousandths of g or in cm/s^2",
                    "multiply the accelerometer's columns by 0.00980665 or by 0.01");
-  } else if (force < 0.5 * kStandardGravity) {
+  } else if (force < 0.5 * gravity) {
     findings->Fail(what + ": gravity was taken out of it",
                    "record the raw accelerometer, not the linear acceleration that a phone makes "
                    "of it");
-  } else if (!IsNear(force, kStandardGravity)) {
+  } else {
     findings->Fail(what, "check the accelerometer's unit and range; it should be in m/s^2");
   }
   return true;
@@ -225,7 +227,7 @@ void CheckMotion(const std::string& name, const ImuStream& stream, Findings* fin
 
 // Against the board's motion, where it can be had.
 void CheckSpeeds(const CheckedCamera& camera, const std::string& imu_name,
-                 const std::vector<VectorSample>& gyro, Findings* findings) {
+                 const std::vector<VectorSample>& gyro, bool is_saturated, Findings* findings) {
   const double degrees = 180.0 / std::numbers::pi;
   const std::string in_degrees = "multiply the gyroscope's columns by 0.0174532925";
   std::optional<SpeedComparison> speeds;
@@ -253,7 +255,8 @@ void CheckSpeeds(const CheckedCamera& camera, const std::string& imu_name,
                             "it is in deg/s",
                             speeds->scale, camera.name.c_str()),
           in_degrees);
-    } else if (!IsNear(speeds->scale, 1.0)) {
+    } else if (!IsNear(speeds->scale, 1.0) && !is_saturated) {
+      // Without its fastest samples a gyroscope seems slower than it is.
       findings->Warn(
           imu_name + Format(": the gyroscope turns %.3g times as fast as the board in %s",
                             speeds->scale, camera.name.c_str()),
@@ -276,7 +279,8 @@ void CheckSpeeds(const CheckedCamera& camera, const std::string& imu_name,
   }
 }
 
-void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, Findings* findings) {
+void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, double gravity,
+              Findings* findings) {
   const std::string& name = imu.recording.name;
   const StreamDefects gyro = FindDefects(imu.recording.stream.gyro);
   const StreamDefects accel = FindDefects(imu.recording.stream.accel);
@@ -291,7 +295,15 @@ void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, Findings* find
     CheckRate(name + " gyroscope", gyro, imu.noise->rate_hz, findings);
     CheckRate(name + " accelerometer", accel, imu.noise->rate_hz, findings);
   }
-  const bool columns_are_right = CheckSizes(name, stream, findings);
+  const double pause_s = std::min(gyro.longest_gap_s, accel.longest_gap_s);
+  if (pause_s > kLongestPause) {
+    findings->Fail(name + Format(" recorded nothing for %.1f s, from %.3f s on", pause_s,
+                                 (gyro.longest_gap_begin - stream.gyro.front().stamp).seconds()),
+                   "calibrate what lies before and after on its own, by --to and --from; a clock "
+                   "that was set while recording looks like that too");
+    return;
+  }
+  const bool columns_are_right = CheckSizes(name, stream, gravity, findings);
   if (columns_are_right) CheckMotion(name, stream, findings);
   if (camera == nullptr || camera->views.size() < 2) return;
   const Span views{camera->views.front().stamp, camera->views.back().stamp};
@@ -299,16 +311,15 @@ void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, Findings* find
        {std::pair(" gyroscope", &stream.gyro), std::pair(" accelerometer", &stream.accel)}) {
     CheckOverlap(camera->name, views, name + sensor, SpanOf(*samples), findings);
   }
-  // Without its fastest samples a gyroscope seems slower than it is.
   const bool is_saturated =
       gyro.num_saturated[0] + gyro.num_saturated[1] + gyro.num_saturated[2] > 0;
-  if (columns_are_right && !is_saturated) CheckSpeeds(*camera, name, stream.gyro, findings);
+  if (columns_are_right) CheckSpeeds(*camera, name, stream.gyro, is_saturated, findings);
 }
 
 }  // namespace
 
 std::vector<Finding> CheckStreams(const std::vector<CheckedCamera>& cameras,
-                                  const std::vector<CheckedImu>& imus) {
+                                  const std::vector<CheckedImu>& imus, double gravity) {
   std::vector<Finding> list;
   Findings findings(&list);
   for (const CheckedCamera& camera : cameras) {
@@ -322,7 +333,7 @@ std::vector<Finding> CheckStreams(const std::vector<CheckedCamera>& cameras,
     }
   }
   for (const CheckedImu& imu : imus) {
-    CheckImu(imu, cameras.empty() ? nullptr : &cameras.front(), &findings);
+    CheckImu(imu, cameras.empty() ? nullptr : &cameras.front(), gravity, &findings);
   }
   return list;
 }

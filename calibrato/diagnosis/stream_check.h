@@ -30,7 +30,8 @@ struct CheckedImu {
 ///
 /// - fail: the solve can't be right. Fewer than ten views; a sensor without samples; clocks whose
 ///   times have no part in common; gyroscope in deg/s; accelerometer in g, without gravity or of
-///   another size; columns of the two swapped; a rig that did not move, or did not turn.
+///   another size; columns of the two swapped; a rig that did not move, or did not turn; a pause of
+///   all of an IMU for more than ten seconds, or a clock that was set.
 /// - inconclusive: the solve leaves something open. A rig that turned about one axis only.
 /// - warn: the solve runs, on less or on worse. Samples that are not finite, stamps out of order or
 ///   twice, gaps, saturation (`Mended` deals with them); an axis that never changes; a rate more
@@ -39,7 +40,9 @@ struct CheckedImu {
 ///
 /// Units show in sizes: the median specific force of a rig in hands is within 20 % of gravity, and
 /// the gyroscope turns as fast as the board does in the camera, in any frame.
+/// @param gravity  Its size where the recording was made [m/s^2].
 [[nodiscard]] std::vector<Finding> CheckStreams(const std::vector<CheckedCamera>& cameras,
-                                                const std::vector<CheckedImu>& imus);
+                                                const std::vector<CheckedImu>& imus,
+                                                double gravity = kStandardGravity);
 
 }  // namespace calibrato

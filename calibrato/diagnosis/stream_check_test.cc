@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -133,6 +134,38 @@ TEST_F(CheckStreamsTest, NamesGaps) {
   ExpectOnly(Severity::kWarn,
              "imu0 gyroscope: 1 gap, the longest 0.505 s after the stamp 1600000004995000000",
              "faster disk");
+}
+
+TEST_F(CheckStreamsTest, RefusesALongPauseOfTheWholeImu) {
+  for (auto* samples : {&gyro(), &accel()}) {
+    for (VectorSample& sample : *samples) {
+      if (sample.stamp - kStart > Duration::FromSeconds(10.0)) {
+        sample.stamp = sample.stamp + Duration::FromSeconds(11.0);
+      }
+    }
+  }
+  const std::vector<Finding> findings = Check();
+  ASSERT_EQ(findings.size(), 3U);  // A gap of each sensor, too.
+  EXPECT_EQ(findings[2].severity, Severity::kFail);
+  EXPECT_THAT(findings[2].what, HasSubstr("imu0 recorded nothing for 11.0 s, from 10.000 s on"));
+}
+
+TEST_F(CheckStreamsTest, KnowsGravityElsewhere) {
+  for (VectorSample& sample : accel()) sample.value *= 3.71 / kStandardGravity;
+  EXPECT_FALSE(Check().empty());
+  EXPECT_TRUE(CheckStreams({camera_}, {imu_}, 3.71).empty());
+}
+
+TEST_F(CheckStreamsTest, KnowsDegreesOfAClippedGyroscope) {
+  for (VectorSample& sample : gyro()) {
+    sample.value *= 180.0 / std::numbers::pi;
+    sample.value.z() = std::min(sample.value.z(), 20.0);
+  }
+  const std::vector<Finding> findings = Check();
+  EXPECT_TRUE(std::any_of(findings.begin(), findings.end(), [](const Finding& finding) {
+    return finding.severity == Severity::kFail &&
+           finding.what.find("it is in deg/s") != std::string::npos;
+  }));
 }
 
 TEST_F(CheckStreamsTest, NamesSaturation) {
