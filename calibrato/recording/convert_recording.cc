@@ -1,9 +1,11 @@
 #include "calibrato/recording/convert_recording.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -56,11 +58,33 @@ void CheckTarget(const std::string& path, bool replace) {
   }
 }
 
+// The seconds of a header's stamp have 32 bits, in ROS 2 with a sign.
+void CheckStamp(MessageEncoding encoding, Time stamp, const std::string& topic) {
+  const int64_t last_s = encoding == MessageEncoding::kCdr ? INT32_MAX : int64_t{UINT32_MAX};
+  if (stamp.nanoseconds() / 1'000'000'000 <= last_s) return;
+  throw InputError(
+      {"stamp too late for a bag", topic,
+       std::to_string(stamp.nanoseconds()) + " ns, the last is " + std::to_string(last_s) + " s",
+       "check that the stamps are in nanoseconds"});
+}
+
+// What ROS takes as the name of a topic; a glob that chose photos is none.
+bool IsTopic(const std::string& name) {
+  return name.starts_with('/') && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+           return std::isalnum(c) != 0 || c == '_' || c == '/';
+         });
+}
+
 // A run of messages of one topic, in the order in which they are to be written.
 class Stream {
  public:
-  Stream(size_t topic, std::vector<Time> stamps, std::function<std::string(size_t)> message)
-      : topic_(topic), stamps_(std::move(stamps)), message_(std::move(message)) {}
+  Stream(const std::string& topic, const std::string& type, std::vector<Time> stamps,
+         std::function<std::string(size_t)> message, MessageBagWriter* writer)
+      : topic_(writer->AddTopic(topic, type)),
+        stamps_(std::move(stamps)),
+        message_(std::move(message)) {
+    for (const Time stamp : stamps_) CheckStamp(writer->encoding(), stamp, topic);
+  }
   bool at_end() const { return next_ == stamps_.size(); }
   Time stamp() const { return stamps_[next_]; }
   size_t size() const { return stamps_.size(); }
@@ -76,7 +100,6 @@ class Stream {
   size_t next_ = 0;
 };
 
-// Stamps that bags cannot hold are those before 1970; no list and no bag is read with such.
 std::vector<Time> StampsOf(const std::vector<VectorSample>& samples) {
   std::vector<Time> stamps;
   stamps.reserve(samples.size());
@@ -89,11 +112,11 @@ Stream CameraStream(const CameraRecording& camera, const std::string& fallback,
   const CameraImages& images = ImagesOf(camera);
   const bool is_file = std::holds_alternative<EncodedFile>(images.reader->Read(0).content);
   std::string topic = camera.name;
-  if (!topic.starts_with('/')) topic = fallback + (is_file ? "/compressed" : "");
+  if (!IsTopic(topic)) topic = fallback + (is_file ? "/compressed" : "");
   std::vector<Time> stamps;
   for (const RecordedImage& image : images.list) stamps.push_back(image.stamp);
   const MessageEncoding encoding = writer->encoding();
-  return {writer->AddTopic(topic, is_file ? "CompressedImage" : "Image"), std::move(stamps),
+  return {topic, is_file ? "CompressedImage" : "Image", std::move(stamps),
           [&images, encoding](size_t k) -> std::string {
             StoredImage image = images.reader->Read(k);
             const Time stamp = images.list[k].stamp;
@@ -103,25 +126,27 @@ Stream CameraStream(const CameraRecording& camera, const std::string& fallback,
             }
             return ImageMessageBytes(
                 encoding, {stamp, "", std::get<RawPixels>(std::move(image.content))}, sequence);
-          }};
+          },
+          writer};
 }
 
 Stream ImuTopicStream(const std::string& topic, const std::vector<VectorSample>* gyro,
                       const std::vector<VectorSample>* accel, MessageBagWriter* writer) {
   const MessageEncoding encoding = writer->encoding();
-  return {writer->AddTopic(topic, "Imu"), StampsOf(gyro != nullptr ? *gyro : *accel),
+  return {topic, "Imu", StampsOf(gyro != nullptr ? *gyro : *accel),
           [=](size_t k) {
             ImuMessage message;
             message.stamp = (gyro != nullptr ? *gyro : *accel)[k].stamp;
             if (gyro != nullptr) message.gyro = (*gyro)[k].value;
             if (accel != nullptr) message.accel = (*accel)[k].value;
             return ImuMessageBytes(encoding, message, static_cast<uint32_t>(k));
-          }};
+          },
+          writer};
 }
 
 void AddImuStreams(const ImuRecording& imu, const std::string& fallback, MessageBagWriter* writer,
                    std::vector<Stream>* streams) {
-  const std::string topic = imu.name.starts_with('/') ? imu.name : fallback;
+  const std::string topic = IsTopic(imu.name) ? imu.name : fallback;
   if (HasCommonStamps(imu.stream)) {
     streams->push_back(ImuTopicStream(topic, &imu.stream.gyro, &imu.stream.accel, writer));
     return;

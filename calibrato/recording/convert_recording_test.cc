@@ -214,6 +214,21 @@ TEST_F(ConvertTest, LeavesNothingBehindWhenAnImageCannotBeRead) {
   }
 }
 
+TEST_F(ConvertTest, RefusesStampsThatWouldNotFit) {
+  // 2^31 s fit into a header of ROS 1, not of ROS 2; 2^32 s into neither.
+  for (const auto& [stamp, fits_ros1] :
+       {std::pair("2147483648000000000", true), std::pair("4294967296000000000", false)}) {
+    TestFolder late;
+    late.Write("cam0/" + std::string(stamp) + ".png", "\x89PNG\r\n\x1a\n");
+    const Recording recording = OpenRecording(late.path(), {});
+    EXPECT_EQ(ErrorOf(recording, "late.bag", true).empty(), fits_ros1);
+    EXPECT_THAT(InputErrorOf([&] {
+                  ConvertRecording(recording, RecordingForm::kMcap, Path(folder_, "late"), true);
+                }),
+                HasSubstr("too late"));
+  }
+}
+
 TEST_F(ConvertTest, RefusesWhatBagsHaveNoFormFor) {
   TestFolder corners;
   corners.Write("cam0_corners.csv", "timestamp,tag_id,u,v,x,y,z\n5,0,1,2,0,0,0\n");

@@ -114,7 +114,7 @@ std::optional<size_t> NumImagesRead(const TestFolder& folder, const std::string&
 // bytes that are mostly empty.
 size_t Step(const std::string& bytes) {
   if (FullSample()) return 1;
-  return bytes.size() > 8000 ? 71 : 6;
+  return bytes.size() > 8000 ? 97 : 10;
 }
 
 struct Sample {
@@ -172,7 +172,7 @@ TEST_P(DamagedBags, WithHugeNumbersAnywhereAreRefusedOrReadInPart) {
 }
 
 TEST_P(DamagedBags, WithBytesFlippedAreRefusedOrReadInPart) {
-  const int num_trials = FullSample() ? 20'000 : 400;
+  const int num_trials = FullSample() ? 20'000 : 250;
   const std::string& bytes = GetParam().bytes;
   Rng rng = Rng(6).Stream("flipped bytes of " + GetParam().name);
   for (int trial = 0; trial < num_trials; ++trial) {

@@ -22,8 +22,8 @@ namespace calibrato {
 /// digits alone (/cam0/image_raw, /cam1/image_raw), in the order of their numbers. Where there is a
 /// choice beyond that, it is refused, and the topics listed. Two topics of Imu of which one is
 /// called gyro where the other is called accel are one IMU whose sensors have stamps of their own.
-/// @throws InputError: no topic of images, a choice, a glob that fits none or several, a topic
-/// without messages, images of one stamp (as where drivers leave stamps at 0); damaged bags.
+/// @throws InputError: no topic of images, a choice, a glob that fits none or several, images of
+/// one stamp (as where drivers leave stamps at 0); damaged bags.
 [[nodiscard]] Recording OpenMessageRecording(const std::string& path,
                                              std::vector<std::unique_ptr<MessageLog>> logs,
                                              const RecordingOptions& options);

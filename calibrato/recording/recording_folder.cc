@@ -350,7 +350,8 @@ Recording OpenRecordingFolder(const std::string& given_path, const RecordingOpti
   if (recording.cameras.empty()) {
     throw InputError({"no recording", path,
                       "found neither cam0_corners.csv[.gz] nor images in cam0/data, cam0 or the "
-                      "folder itself (png, jpg, jpeg, bmp, tif, tiff, pgm)",
+                      "folder itself (png, jpg, jpeg, bmp, tif, tiff, pgm), nor a bag or a video "
+                      "cam0.mp4",
                       "name the folder that holds one of these"});
   }
   CheckPairs(path, recording.cameras);

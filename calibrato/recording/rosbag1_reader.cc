@@ -18,13 +18,19 @@ constexpr uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0" and the end of the line
 constexpr uint64_t kMaxHeaderBytes = uint64_t{1} << 20;
 constexpr uint64_t kInFile = UINT64_MAX;  // a place outside of every chunk
 
+// What a record is; 4 and 6 are indexes.
 enum Operation : uint8_t {
   kMessage = 0x02,
   kBagHeader = 0x03,
-  kIndex = 0x04,
   kChunk = 0x05,
-  kChunkInfo = 0x06,
   kConnection = 0x07,
+};
+
+struct Record {
+  std::string header;
+  uint8_t operation = 0;
+  uint64_t data_begin = 0;
+  uint64_t data_bytes = 0;
 };
 
 // name=value pairs, each behind its length.
@@ -88,17 +94,17 @@ class Rosbag1 : public MessageLog {
   void ReadRecords() {
     uint64_t position = kMagicBytes;
     while (position < file_->size()) {
-      uint64_t next = 0;
+      std::optional<Record> record;
       try {
-        next = EndOfRecord(position);
+        record = RecordAt(position);
       } catch (const Damage& damage) {
         if (is_closed_) throw;
         warnings_.push_back(path() + ": the bag was never closed, and is used up to byte " +
                             std::to_string(position) + ": " + damage.why);
         return;
       }
-      ReadRecord(position, next);
-      position = next;
+      ReadRecord(*record);
+      position = record->data_begin + record->data_bytes;
     }
     if (is_closed_ && chunks_.size() != num_chunks_claimed_) {
       throw Damage{"it has " + std::to_string(chunks_.size()) + " chunks, its header says " +
@@ -106,63 +112,59 @@ class Rosbag1 : public MessageLog {
     }
   }
 
-  uint64_t EndOfRecord(uint64_t position) {
-    header_bytes_ = ByteFields(file_->Read(position, 4)).Take<uint32_t>();
-    if (header_bytes_ > kMaxHeaderBytes) {
-      throw Damage{"a record's header of " + std::to_string(header_bytes_) +
+  Record RecordAt(uint64_t position) const {
+    const auto header_bytes = ByteFields(file_->Read(position, 4)).Take<uint32_t>();
+    if (header_bytes > kMaxHeaderBytes) {
+      throw Damage{"a record's header of " + std::to_string(header_bytes) +
                    " bytes begins at byte " + std::to_string(position)};
     }
-    // The header and, behind it, the size of the data.
-    header_ = file_->Read(position + 4, header_bytes_ + 4);
-    data_bytes_ =
-        ByteFields(std::string_view(header_).substr(header_bytes_)).template Take<uint32_t>();
-    const uint64_t begin = position + 8 + header_bytes_;
-    if (data_bytes_ > file_->size() - begin) {
+    Record record;
+    record.header = file_->Read(position + 4, header_bytes);
+    record.operation = Header(record.header).Number<uint8_t>("op");
+    if (record.operation < kMessage || record.operation > kConnection) {
+      throw Damage{"a record of an unknown kind begins at byte " + std::to_string(position)};
+    }
+    record.data_bytes = ByteFields(file_->Read(position + 4 + header_bytes, 4)).Take<uint32_t>();
+    record.data_begin = position + 8 + header_bytes;
+    if (record.data_bytes > file_->size() - record.data_begin) {
       throw Damage{"it ends inside of the record at byte " + std::to_string(position)};
     }
-    return begin + data_bytes_;
+    return record;
   }
 
-  void ReadRecord(uint64_t position, uint64_t next) {
-    const Header header(std::string_view(header_).substr(0, header_bytes_));
-    const uint64_t begin = next - data_bytes_;
-    switch (header.Number<uint8_t>("op")) {
-      case kBagHeader:
-        is_closed_ = header.Number<uint64_t>("index_pos") != 0;
-        num_chunks_claimed_ = header.Number<uint32_t>("chunk_count");
-        if (header.Number<uint64_t>("index_pos") > file_->size()) {
-          throw Damage{"it ends before its index, which begins at byte " +
-                       std::to_string(header.Number<uint64_t>("index_pos"))};
-        }
-        break;
-      case kChunk:
-        ReadChunk(header, begin);
-        break;
-      case kConnection:
-        AddConnection(header, file_->Read(begin, data_bytes_));
-        break;
-      case kMessage:
-        VisitMessage(header, {kInFile, begin, data_bytes_}, file_->Read(begin, data_bytes_));
-        break;
-      case kIndex:
-      case kChunkInfo:
-        break;
-      default:
-        throw Damage{"a record of an unknown kind begins at byte " + std::to_string(position)};
+  void ReadRecord(const Record& record) {
+    const Header header(record.header);
+    const auto data = [&] { return file_->Read(record.data_begin, record.data_bytes); };
+    if (record.operation == kBagHeader) {
+      const auto index_position = header.Number<uint64_t>("index_pos");
+      is_closed_ = index_position != 0;
+      num_chunks_claimed_ = header.Number<uint32_t>("chunk_count");
+      if (index_position > file_->size()) {
+        throw Damage{"it ends before its index, which begins at byte " +
+                     std::to_string(index_position)};
+      }
+    } else if (record.operation == kChunk) {
+      ReadChunk(header, record);
+    } else if (record.operation == kConnection) {
+      AddConnection(header, data());
+    } else if (record.operation == kMessage) {
+      VisitMessage(header, {kInFile, record.data_begin, record.data_bytes}, data());
     }
+    // Indexes say nothing that the messages themselves do not.
   }
 
-  void ReadChunk(const Header& header, uint64_t begin) {
+  void ReadChunk(const Header& header, const Record& record) {
     const std::string name(header.Text("compression").substr(0, 40));
     const std::optional<Compression> compression = CompressionFromName(name);
     if (!compression || *compression == Compression::kZstd) {
       throw Damage{"a chunk is packed by '" + name + "'"};
     }
     const bool is_plain = *compression == Compression::kNone;
-    const Chunk chunk{begin, data_bytes_, header.Number<uint32_t>("size"), *compression};
+    const Chunk chunk{record.data_begin, record.data_bytes, header.Number<uint32_t>("size"),
+                      *compression};
     const auto number = chunks_.size();
     chunks_.push_back(chunk);
-    if (is_plain && chunk.size == 0 && !is_closed_) return;  // the chunk that was being written
+    if (chunk.size == 0 && chunk.packed_size == 0) return;  // It was still being written.
     const std::shared_ptr<const std::string> bytes = cache_.Get(chunk);
     ByteFields fields(*bytes);
     while (!fields.at_end()) {
@@ -174,7 +176,7 @@ class Rosbag1 : public MessageLog {
       // A message of a chunk that is not packed is read again without the rest of the chunk.
       const uint64_t offset = fields.position() - data.size();
       VisitMessage(inner,
-                   is_plain ? MessagePlace{kInFile, begin + offset, data.size()}
+                   is_plain ? MessagePlace{kInFile, chunk.offset + offset, data.size()}
                             : MessagePlace{number, offset, data.size()},
                    data);
     }
@@ -202,10 +204,6 @@ class Rosbag1 : public MessageLog {
   const Visit* visit_ = nullptr;
   bool is_closed_ = false;
   uint64_t num_chunks_claimed_ = 0;
-  // Of the record that is being read: the header with what follows it, and the sizes of both parts.
-  std::string header_;
-  uint64_t header_bytes_ = 0;
-  uint64_t data_bytes_ = 0;
 };
 
 }  // namespace

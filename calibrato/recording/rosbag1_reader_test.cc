@@ -83,6 +83,12 @@ TEST_F(Rosbag1Test, ReadsABagThatWasNeverClosedAndSaysSo) {
   const Recording cut = Open(bag + Image(kStart + 9, 'x').substr(0, 50));
   ExpectContent(cut);
   EXPECT_THAT(cut.warnings, ElementsAre(HasSubstr("never closed")));
+  // Of a packed chunk that was still being written, nothing can be unpacked.
+  const Recording packed = Open(Bag({PlainChunk(kFirstChunk), PlainChunk(kSecondChunk),
+                                     BagChunk("bz2", "", 0) + PackedByBzip2("unfinished")},
+                                    0, ""));
+  ExpectContent(packed);
+  EXPECT_THAT(packed.warnings, ElementsAre(HasSubstr("never closed")));
 }
 
 TEST_F(Rosbag1Test, RefusesAClosedBagThatIsCutAnywhere) {

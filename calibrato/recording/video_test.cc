@@ -98,6 +98,18 @@ TEST_F(VideoTest, StandsInAFolderBesideItsImu) {
               AllOf(HasSubstr("cam2.avi"), HasSubstr("no video cam1")));
 }
 
+TEST_F(VideoTest, RefusesOptionsThatChooseNothing) {
+  RecordingOptions options;
+  options.image_globs = {"*.png"};
+  EXPECT_THAT(ErrorOf(options), AllOf(HasSubstr("--images"), HasSubstr("a video")));
+  TestFolder photos;
+  photos.Write("left.png", "");
+  RecordingOptions topics;
+  topics.imu_globs = {"/imu"};
+  EXPECT_THAT(InputErrorOf([&] { static_cast<void>(OpenRecording(photos.path(), topics)); }),
+              AllOf(HasSubstr("--imu-topic"), HasSubstr("a folder")));
+}
+
 TEST_F(VideoTest, RefusesWhatIsNoVideo) {
   const std::string whole = ReadFile(path_);
   folder_.Write("cam0.avi", whole.substr(0, 100));
