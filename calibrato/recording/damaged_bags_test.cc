@@ -5,12 +5,13 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
-#include <limits>
+#include <optional>
 #include <string_view>
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/full_sample_for_test.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/input_error_testing.h"
 #include "calibrato/base/rng.h"
 #include "calibrato/recording/bag_for_test.h"
 #include "calibrato/recording/recording.h"
@@ -183,6 +184,20 @@ TEST_P(DamagedBags, WithBytesFlippedAreRefusedOrReadInPart) {
     }
     NumImagesRead(folder_, damaged);
   }
+}
+
+TEST(DamagedBag, OfMoreMessagesThanBytesIsRefused) {
+  // 120,000 times the same message, in a file of a few kilobytes.
+  std::string records = BagConnection(0, "/cam0/image_raw", "sensor_msgs/Image");
+  const std::string message = BagMessage(0, kStart, Ros1Image(kStart, 1, 1, "mono8", 1, "a"));
+  for (int k = 0; k < 120'000; ++k) records += message;
+  const TestFolder folder;
+  const std::string bag = Bag({BagChunk("bz2", PackedByBzip2(records), records.size())}, 1,
+                              BagConnection(0, "/a", "b"));
+  ASSERT_LT(bag.size(), 30'000U);
+  const std::string path = folder.Write("bomb", bag);
+  EXPECT_THAT(InputErrorOf([&] { static_cast<void>(OpenRecording(path, {})); }),
+              HasSubstr("more messages"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, DamagedBags, testing::ValuesIn(Samples()),
