@@ -9,7 +9,6 @@
 #include "calibrato/base/progress.h"
 #include "calibrato/calibration/frame_matching.h"
 #include "calibrato/detection/detect.h"
-#include "calibrato/recording/photo.h"
 
 namespace calibrato {
 namespace {
@@ -25,7 +24,7 @@ std::vector<Time> StampsOf(const CameraRecording& camera) {
   if (const auto* views = std::get_if<std::vector<BoardView>>(&camera.data)) {
     for (const BoardView& view : *views) stamps.push_back(view.stamp);
   } else {
-    for (const ImageFile& image : std::get<std::vector<ImageFile>>(camera.data)) {
+    for (const RecordedImage& image : std::get<CameraImages>(camera.data).list) {
       stamps.push_back(image.stamp);
     }
   }
@@ -136,20 +135,20 @@ CameraViews DetectedViews(const CameraRecording& camera, const std::vector<Entry
     throw InputError({"no board given", camera.name, "images are searched for a known board",
                       "give --target board.yaml"});
   }
-  const auto& images = std::get<std::vector<ImageFile>>(camera.data);
+  const auto& images = std::get<CameraImages>(camera.data);
   ImageSource source;
-  std::vector<std::string> paths;
+  std::vector<size_t> numbers;
   std::map<std::string, int> frames;
-  for (size_t k = 0; k < images.size(); ++k) {
+  for (size_t k = 0; k < images.list.size(); ++k) {
     if (!inside[k]) continue;
-    source.names.push_back(images[k].name);
-    source.stamps.push_back(images[k].stamp);
-    paths.push_back(images[k].path);
-    frames[images[k].name] = entries[k].frame;
+    source.names.push_back(images.list[k].name);
+    source.stamps.push_back(images.list[k].stamp);
+    numbers.push_back(k);
+    frames[images.list[k].name] = entries[k].frame;
   }
   source.load = [&](size_t k) {
     progress->Advance();
-    return ReadPhoto(paths[k]);
+    return GreyOf(images.reader->Read(numbers[k]));
   };
   Detections detections = DetectBoards(source, *board);
   CameraViews found{std::move(detections.views), {},
@@ -169,14 +168,14 @@ std::vector<CameraViews> FindBoardViews(const Recording& recording,
   const auto inside = Inside(entries, is_stamped, recording.path, window);
   int64_t num_images = 0;
   for (size_t c = 0; c < inside.size(); ++c) {
-    if (!std::holds_alternative<std::vector<ImageFile>>(recording.cameras[c].data)) continue;
+    if (!std::holds_alternative<CameraImages>(recording.cameras[c].data)) continue;
     num_images += std::count(inside[c].begin(), inside[c].end(), true);
   }
   Progress progress("finding the board", num_images);
   std::vector<CameraViews> found;
   for (size_t c = 0; c < recording.cameras.size(); ++c) {
     const CameraRecording& camera = recording.cameras[c];
-    found.push_back(std::holds_alternative<std::vector<ImageFile>>(camera.data)
+    found.push_back(std::holds_alternative<CameraImages>(camera.data)
                         ? DetectedViews(camera, entries[c], inside[c], board, &progress)
                         : ListedViews(camera, entries[c], inside[c]));
   }

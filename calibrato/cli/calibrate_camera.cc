@@ -26,6 +26,7 @@ struct Options {
   std::vector<std::string> images;
   std::vector<std::string> models = {"pinhole-radtan"};
   std::string resolution;
+  std::optional<double> frame_rate_hz;
   std::vector<std::string> fixed;
   std::string select = "all";
   bool estimate_bending = false;
@@ -126,7 +127,9 @@ ExitCode RunCalibrateCamera(const Options& options, const GlobalOptions& global)
   if (!options.resolution.empty()) {
     recording_options.resolution = ParseResolution(options.resolution);
   }
+  recording_options.frame_rate_hz = options.frame_rate_hz;
   const Recording recording = OpenRecording(options.recording, recording_options);
+  warnings.insert(warnings.end(), recording.warnings.begin(), recording.warnings.end());
   if (options.models.size() != 1 && options.models.size() != recording.cameras.size()) {
     throw InputError({"wrong number of --model", options.recording,
                       std::to_string(options.models.size()) + " models for " +
@@ -169,10 +172,14 @@ Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global) {
     models += (models.empty() ? "" : ", ") + std::string(name);
   }
   app.add_option("recording", options->recording,
-                 "Folder of photos, of cameras' images, or of corner lists (cam0_corners.csv)")
+                 "Folder of photos, of cameras' images, or of corner lists (cam0_corners.csv); "
+                 "ROS 1 bag, ROS 2 bag, MCAP file, video")
       ->required();
   app.add_option("--target", options->target, "The board: Kalibr's target YAML");
-  app.add_option("--images", options->images, "Which photos, as a glob; once a camera");
+  app.add_option("--images", options->images,
+                 "Which photos or image topics, as a glob; once a camera");
+  app.add_option("--frame-rate", options->frame_rate_hz,
+                 "Of a video without a list of stamps [Hz]");
   app.add_option("--model", options->models, "One for all or one a camera, of " + models)
       ->capture_default_str();
   app.add_option("--resolution", options->resolution, "WIDTHxHEIGHT, for corner lists");

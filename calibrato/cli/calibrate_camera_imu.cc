@@ -34,6 +34,9 @@ constexpr double kTrajectoryRateHz = 200.0;
 struct Options {
   std::string recording;
   std::string target;
+  std::vector<std::string> images;
+  std::vector<std::string> imu_topics;
+  std::optional<double> frame_rate_hz;
   std::string cameras;
   std::string camera_result;
   std::vector<std::string> imus;
@@ -156,7 +159,7 @@ std::vector<Imu> ReadImus(const Options& options, const Recording& recording,
   if (recording.imus.empty()) {
     throw InputError(
         {"no IMU in the recording", options.recording,
-         "there is no imu0.csv, imu0/data.csv, or gyro0.csv with accel0.csv",
+         "there is no imu0.csv, imu0/data.csv, gyro0.csv with accel0.csv, or topic of Imu messages",
          "put the IMU's samples there; for cameras alone: calibrato calibrate camera"});
   }
   if (imus.size() != recording.imus.size()) {
@@ -298,7 +301,11 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
     board = BoardFromValue(ReadYaml(options.target), &warnings);
     recording_options.board_points_g = BoardPoints(*board);
   }
+  recording_options.image_globs = options.images;
+  recording_options.imu_globs = options.imu_topics;
+  recording_options.frame_rate_hz = options.frame_rate_hz;
   Recording recording = OpenRecording(options.recording, recording_options);
+  warnings.insert(warnings.end(), recording.warnings.begin(), recording.warnings.end());
   CompleteResolutions(known, options, &recording);
   const std::vector<Imu> imus = ReadImus(options, recording, &warnings);
   PrintWarnings(warnings);
@@ -349,9 +356,15 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
 Action SetUpCalibrateCameraImu(CLI::App& app, const GlobalOptions& global) {
   auto options = std::make_shared<Options>();
   app.add_option("recording", options->recording,
-                 "Folder of cameras' images or corner lists, with imu0.csv beside them")
+                 "Folder of cameras' images or corner lists, with imu0.csv beside them; ROS 1 bag, "
+                 "ROS 2 bag, MCAP file")
       ->required();
   app.add_option("--target", options->target, "The board: Kalibr's target YAML");
+  app.add_option("--images", options->images,
+                 "Which image topics of a bag, as a glob; once a camera");
+  app.add_option("--imu-topic", options->imu_topics,
+                 "Which IMU topics of a bag, as a glob; once an IMU");
+  app.add_option("--frame-rate", options->frame_rate_hz, "Of videos without a list of stamps [Hz]");
   app.add_option("--cameras", options->cameras, "The cameras: Kalibr's camchain.yaml");
   app.add_option("--camera-result", options->camera_result,
                  "The --out folder of calibrate camera: its uncertainty is taken along");

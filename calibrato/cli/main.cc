@@ -38,6 +38,7 @@ const std::vector<Command> kCommands = {
     {{"evaluate", "table1"},
      "Learned, handcrafted and random motions on rigs never trained on",
      SetUpEvaluateTable1},
+    {{"convert"}, "A recording as folder, ROS 1 bag or MCAP file, without loss", SetUpConvert},
     {{"diff"},
      "Whether two calibrations of the same cameras differ, and by how many pixels",
      SetUpDiff},
@@ -69,7 +70,7 @@ void AddGlobalOptions(CLI::App* app, GlobalOptions* global) {
       ->capture_default_str();
   app->add_flag("--json", global->json, "The result on stdout, nothing else");
   app->add_flag("--quiet", global->quiet, "No progress, no summary");
-  app->add_flag("--force", global->force, "Replace a recording that exists (simulate)");
+  app->add_flag("--force", global->force, "Replace a recording that exists (simulate, convert)");
 }
 
 // The first word that names no command, with what could stand there; else nothing.

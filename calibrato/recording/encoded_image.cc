@@ -309,12 +309,33 @@ EncodedImage Walk(std::string& bytes) {
 }  // namespace
 
 EncodedImage ReadEncodedImage(const std::string& path) {
-  std::string bytes = ReadFile(path, kMaxFileBytes);
+  return ExamineEncodedImage(ReadFile(path, kMaxFileBytes), path);
+}
+
+EncodedImage ExamineEncodedImage(std::string bytes, const std::string& where) {
   try {
     return Walk(bytes);
   } catch (const Flaw& flaw) {
-    throw InputError({"cannot read image", path, flaw.why, flaw.remedy});
+    throw InputError({"cannot read image", where, flaw.why, flaw.remedy});
   }
+}
+
+std::string ImageExtension(std::string_view bytes) {
+  const std::optional<ImageFormat> format = Recognise(bytes);
+  if (!format) return "";
+  switch (*format) {
+    case ImageFormat::kPng:
+      return "png";
+    case ImageFormat::kJpeg:
+      return "jpg";
+    case ImageFormat::kBmp:
+      return "bmp";
+    case ImageFormat::kTiff:
+      return "tiff";
+    case ImageFormat::kPgm:
+      return "pgm";
+  }
+  return "";
 }
 
 }  // namespace calibrato

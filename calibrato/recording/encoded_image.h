@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "calibrato/sensors/camera_model.h"
 
@@ -30,5 +32,11 @@ inline constexpr int64_t kMaxImagePixels = 100'000'000;
 /// @throws InputError that names the file: missing, a folder, empty, not an image of these formats,
 /// truncated, damaged, more than kMaxImagePixels, a JPEG of inks (CMYK).
 [[nodiscard]] EncodedImage ReadEncodedImage(const std::string& path);
+
+/// The same of a file's content; `where` stands in for its path.
+[[nodiscard]] EncodedImage ExamineEncodedImage(std::string bytes, const std::string& where);
+
+/// The format as the first bytes tell it: "png", "jpg", "bmp", "tiff", "pgm"; empty if it is none.
+[[nodiscard]] std::string ImageExtension(std::string_view bytes);
 
 }  // namespace calibrato

@@ -234,6 +234,21 @@ std::vector<VectorSample> ReadOneSensor(const std::string& path, const Quantity&
   return std::move(ReadList(path, layout).front());
 }
 
+std::string ListText(const Layout& layout,
+                     const std::vector<const std::vector<VectorSample>*>& sensors) {
+  std::string text = layout.Header() + "\n";
+  const std::vector<VectorSample>& first = *sensors.front();
+  for (size_t k = 0; k < first.size(); ++k) {
+    text += std::to_string(first[k].stamp.nanoseconds());
+    for (const std::vector<VectorSample>* sensor : sensors) {
+      assert((*sensor)[k].stamp == first[k].stamp);
+      for (const double x : (*sensor)[k].value) text += ',' + FormatNumber(x);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 ImuStream ReadImuList(const std::string& path) {
@@ -252,17 +267,15 @@ std::vector<VectorSample> ReadAccelList(const std::string& path) {
 
 std::string ImuListText(const ImuStream& stream) {
   assert(stream.gyro.size() == stream.accel.size());
-  const Layout layout{{&kGyro, &kAccel}};
-  std::string text = layout.Header() + "\n";
-  for (size_t k = 0; k < stream.gyro.size(); ++k) {
-    assert(stream.gyro[k].stamp == stream.accel[k].stamp);
-    text += std::to_string(stream.gyro[k].stamp.nanoseconds());
-    for (const Eigen::Vector3d& value : {stream.gyro[k].value, stream.accel[k].value}) {
-      for (const double x : value) text += ',' + FormatNumber(x);
-    }
-    text += '\n';
-  }
-  return text;
+  return ListText({{&kGyro, &kAccel}}, {&stream.gyro, &stream.accel});
+}
+
+std::string GyroListText(const std::vector<VectorSample>& samples) {
+  return ListText({{&kGyro}}, {&samples});
+}
+
+std::string AccelListText(const std::vector<VectorSample>& samples) {
+  return ListText({{&kAccel}}, {&samples});
 }
 
 }  // namespace calibrato

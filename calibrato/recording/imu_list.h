@@ -38,5 +38,7 @@ namespace calibrato {
 /// The content of such a list; digits enough to read back the same numbers.
 /// @pre Both sensors have the same stamps.
 [[nodiscard]] std::string ImuListText(const ImuStream& stream);
+[[nodiscard]] std::string GyroListText(const std::vector<VectorSample>& samples);
+[[nodiscard]] std::string AccelListText(const std::vector<VectorSample>& samples);
 
 }  // namespace calibrato

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "calibrato/recording/stored_image.h"
 #include "calibrato/sensors/image.h"
 
 namespace calibrato {
@@ -17,5 +18,8 @@ namespace calibrato {
 /// @throws InputError that names the file: unreadable, a folder, empty, truncated, not an image,
 /// or more than 100 megapixels (judged by its header, before any memory is spent on pixels).
 [[nodiscard]] GreyImage ReadPhoto(const std::string& path);
+
+/// The same of a file's content; `where` stands in for its path.
+[[nodiscard]] GreyImage DecodePhoto(const EncodedFile& file, const std::string& where);
 
 }  // namespace calibrato

@@ -1,4 +1,4 @@
-#include "calibrato/recording/recording.h"
+#include "calibrato/recording/recording_folder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,10 +19,10 @@ const std::string kCorners =
     "#timestamp [ns],tag_id,tag_corner,u [px],v [px],x [m],y [m],z [m]\n"
     "10,0,0,1,2,0,0,0\n";
 
-class RecordingTest : public testing::Test {
+class RecordingFolderTest : public testing::Test {
  protected:
   Recording Open(const RecordingOptions& options = {}) const {
-    return OpenRecording(folder_.path(), options);
+    return OpenRecordingFolder(folder_.path(), options);
   }
   std::string ErrorOf(const RecordingOptions& options = {}) const {
     try {
@@ -33,7 +33,7 @@ class RecordingTest : public testing::Test {
     return "no error";
   }
   void Touch(const std::vector<std::string>& names) const {
-    for (const std::string& name : names) folder_.Write(name, "");
+    for (const std::string& name : names) folder_.Write(name, "content of " + name);
   }
   static RecordingOptions Globs(const std::vector<std::string>& globs) {
     RecordingOptions options;
@@ -44,17 +44,22 @@ class RecordingTest : public testing::Test {
   TestFolder folder_;
 };
 
-const std::vector<ImageFile>& Images(const CameraRecording& camera) {
-  return std::get<std::vector<ImageFile>>(camera.data);
+const std::vector<RecordedImage>& Images(const CameraRecording& camera) {
+  return std::get<CameraImages>(camera.data).list;
+}
+
+std::string ContentOf(const CameraRecording& camera, size_t k) {
+  const StoredImage image = std::get<CameraImages>(camera.data).reader->Read(k);
+  return std::get<EncodedFile>(image.content).bytes;
 }
 
 std::vector<std::string> Names(const CameraRecording& camera) {
   std::vector<std::string> names;
-  for (const ImageFile& file : Images(camera)) names.push_back(file.name);
+  for (const RecordedImage& file : Images(camera)) names.push_back(file.name);
   return names;
 }
 
-TEST_F(RecordingTest, OpensListsOfCornersPlainAndGzip) {
+TEST_F(RecordingFolderTest, OpensListsOfCornersPlainAndGzip) {
   folder_.Write("cam0_corners.csv", kCorners);
   folder_.WriteGzip("cam1_corners.csv.gz", kCorners);
   Touch({"photo.png"});
@@ -70,7 +75,7 @@ TEST_F(RecordingTest, OpensListsOfCornersPlainAndGzip) {
   }
 }
 
-TEST_F(RecordingTest, FindsTheResolutionWhereItIsNearest) {
+TEST_F(RecordingFolderTest, FindsTheResolutionWhereItIsNearest) {
   folder_.Write("cam0_corners.csv", kCorners);
   folder_.Write("cam1_corners.csv", kCorners);
   // An unknown lens is no reason not to read the size.
@@ -91,7 +96,7 @@ TEST_F(RecordingTest, FindsTheResolutionWhereItIsNearest) {
   EXPECT_EQ(Open(options).cameras[1].resolution, (Resolution{11, 12}));
 }
 
-TEST_F(RecordingTest, RefusesAMalformedResolutionByFileAndLine) {
+TEST_F(RecordingFolderTest, RefusesAMalformedResolutionByFileAndLine) {
   folder_.Write("cam0_corners.csv", kCorners);
   folder_.Write("sensor.yaml", "sensor_type: camera\nresolution: [640]\n");
   EXPECT_THAT(ErrorOf(), AllOf(HasSubstr("sensor.yaml line 2"), HasSubstr("[width, height]")));
@@ -99,7 +104,7 @@ TEST_F(RecordingTest, RefusesAMalformedResolutionByFileAndLine) {
   EXPECT_THAT(ErrorOf(), HasSubstr("resolution"));
 }
 
-TEST_F(RecordingTest, TakesThePointsOfTheBoard) {
+TEST_F(RecordingFolderTest, TakesThePointsOfTheBoard) {
   folder_.Write("cam0_corners.csv", "#timestamp [ns],tag_id,u [px],v [px]\n10,1,3,4\n");
   RecordingOptions options;
   options.board_points_g = Eigen::Matrix3Xd::Constant(3, 2, 0.5);
@@ -109,18 +114,30 @@ TEST_F(RecordingTest, TakesThePointsOfTheBoard) {
   EXPECT_THAT(ErrorOf(), HasSubstr("--target"));
 }
 
-TEST_F(RecordingTest, OpensFoldersOfStampedImagesInOrderOfTime) {
+TEST_F(RecordingFolderTest, OpensFoldersOfStampedImagesInOrderOfTime) {
   Touch({"cam0/data/9999999999.png", "cam0/data/10000000000.png", "cam0/data/data.csv",
          "cam0/sensor.yaml", "cam1/10000000001.PNG"});
   const Recording recording = Open();
   ASSERT_EQ(recording.cameras.size(), 2u);
   EXPECT_THAT(Names(recording.cameras[0]), ElementsAre("9999999999.png", "10000000000.png"));
   EXPECT_EQ(Images(recording.cameras[0])[0].stamp, Time::FromNanoseconds(9999999999));
-  EXPECT_EQ(Images(recording.cameras[0])[0].path, folder_.path() + "/cam0/data/9999999999.png");
+  EXPECT_EQ(ContentOf(recording.cameras[0], 0), "content of cam0/data/9999999999.png");
   EXPECT_EQ(Images(recording.cameras[1])[0].stamp, Time::FromNanoseconds(10000000001));
 }
 
-TEST_F(RecordingTest, EntersEurocsFolderWithItsImu) {
+TEST_F(RecordingFolderTest, LearnsFromTheSensorWhetherImagesAreMosaics) {
+  Touch({"cam0/data/10000000000.png", "cam1/data/10000000000.png", "cam2/10000000000.png"});
+  folder_.Write("cam0/sensor.yaml", "sensor_type: camera\nencoding: bayer_rggb8\n");
+  folder_.Write("cam1/sensor.yaml", "%YAML:1.0\n{{\n");
+  const Recording recording = Open();
+  for (const auto& [camera, expected] :
+       {std::pair(0U, "bayer_rggb8"), std::pair(1U, ""), std::pair(2U, "")}) {
+    const auto& images = std::get<CameraImages>(recording.cameras[camera].data);
+    EXPECT_EQ(std::get<EncodedFile>(images.reader->Read(0).content).encoding, expected);
+  }
+}
+
+TEST_F(RecordingFolderTest, EntersEurocsFolderWithItsImu) {
   Touch({"mav0/cam0/data/10000000000.png", "mav0/cam0/data/10050000000.png"});
   folder_.Write("mav0/cam0/data.csv", "#timestamp [ns],filename\n");
   folder_.Write("mav0/imu0/data.csv",
@@ -137,7 +154,7 @@ TEST_F(RecordingTest, EntersEurocsFolderWithItsImu) {
   EXPECT_TRUE(Open(options).imus.empty());
 }
 
-TEST_F(RecordingTest, TakesStampsFromEurocsListWhereNamesHaveNone) {
+TEST_F(RecordingFolderTest, TakesStampsFromEurocsListWhereNamesHaveNone) {
   Touch({"cam0/data/a.png", "cam0/data/b.png", "cam0/data/c.png"});
   folder_.Write("cam0/data.csv", "#timestamp [ns],filename\n30,a.png\n20, b.png\r\n");
   const Recording recording = Open();
@@ -152,7 +169,7 @@ TEST_F(RecordingTest, TakesStampsFromEurocsListWhereNamesHaveNone) {
   EXPECT_THAT(ErrorOf(), HasSubstr("data.csv line 2"));
 }
 
-TEST_F(RecordingTest, OpensPhotosOfAnyFormatInOrderOfTheirNames) {
+TEST_F(RecordingFolderTest, OpensPhotosOfAnyFormatInOrderOfTheirNames) {
   Touch({"b.JPG", "a.jpeg", "c.Tif", "d.tiff", "e.bmp", "f.pgm", "g.png", "notes.txt", ".h.png",
          "board.yaml"});
   const Recording recording = Open();
@@ -163,15 +180,15 @@ TEST_F(RecordingTest, OpensPhotosOfAnyFormatInOrderOfTheirNames) {
   EXPECT_EQ(Images(recording.cameras[0])[0].stamp, Time());
 }
 
-TEST_F(RecordingTest, TakesStampsOfPhotosOnlyIfAllHaveThem) {
+TEST_F(RecordingFolderTest, TakesStampsOfPhotosOnlyIfAllHaveThem) {
   Touch({"1403636579763555584.png", "1403636579813555456.png"});
   EXPECT_EQ(Images(Open().cameras[0])[1].stamp.nanoseconds(), 1403636579813555456);
   Touch({"preview.png"});
   const Recording recording = Open();
-  for (const ImageFile& file : Images(recording.cameras[0])) EXPECT_EQ(file.stamp, Time());
+  for (const RecordedImage& file : Images(recording.cameras[0])) EXPECT_EQ(file.stamp, Time());
 }
 
-TEST_F(RecordingTest, MakesOneCameraOfEachGlob) {
+TEST_F(RecordingFolderTest, MakesOneCameraOfEachGlob) {
   Touch({"left01.jpg", "left02.jpg", "left.yml", "right01.jpg", "right02.jpg", "far/x1.png",
          "far/x2.png"});
   const Recording recording = Open(Globs({"left*", "right[0-9]*.jpg", "far/x*.png"}));
@@ -179,10 +196,10 @@ TEST_F(RecordingTest, MakesOneCameraOfEachGlob) {
   EXPECT_EQ(recording.cameras[0].name, "left*");
   EXPECT_THAT(Names(recording.cameras[0]), ElementsAre("left01.jpg", "left02.jpg"));
   EXPECT_THAT(Names(recording.cameras[1]), ElementsAre("right01.jpg", "right02.jpg"));
-  EXPECT_EQ(Images(recording.cameras[2])[1].path, folder_.path() + "/far/x2.png");
+  EXPECT_EQ(ContentOf(recording.cameras[2], 1), "content of far/x2.png");
 }
 
-TEST_F(RecordingTest, RefusesAGlobThatMatchesNoImage) {
+TEST_F(RecordingFolderTest, RefusesAGlobThatMatchesNoImage) {
   Touch({"left01.jpg", "left02.jpg", "left.yml"});
   EXPECT_THAT(ErrorOf(Globs({"left*.jpg", "right*.jpg"})),
               AllOf(HasSubstr("'right*.jpg'"), HasSubstr(folder_.path()), HasSubstr("2 images"),
@@ -194,14 +211,14 @@ TEST_F(RecordingTest, RefusesAGlobThatMatchesNoImage) {
   EXPECT_THAT(ErrorOf(Globs({"*.jpg"})), AllOf(HasSubstr("0 images"), HasSubstr("leave --images")));
 }
 
-TEST_F(RecordingTest, RefusesGlobsForListsOfCorners) {
+TEST_F(RecordingFolderTest, RefusesGlobsForListsOfCorners) {
   folder_.Write("cam0_corners.csv", kCorners);
   Touch({"left01.jpg"});
   EXPECT_THAT(ErrorOf(Globs({"left*.jpg"})),
               AllOf(HasSubstr("'left*.jpg'"), HasSubstr(folder_.path()), HasSubstr("1 images")));
 }
 
-TEST_F(RecordingTest, RefusesPhotosThatCannotBePaired) {
+TEST_F(RecordingFolderTest, RefusesPhotosThatCannotBePaired) {
   Touch({"left01.jpg", "left02.jpg", "right01.jpg"});
   EXPECT_THAT(ErrorOf(Globs({"left*.jpg", "right*.jpg"})),
               AllOf(HasSubstr("left*.jpg has 2"), HasSubstr("right*.jpg has 1")));
@@ -209,23 +226,23 @@ TEST_F(RecordingTest, RefusesPhotosThatCannotBePaired) {
   EXPECT_THAT(ErrorOf(Globs({"right*.jpg", "14*.png"})), HasSubstr("stamps"));
 }
 
-TEST_F(RecordingTest, PairsStampedCamerasOfUnequalLength) {
+TEST_F(RecordingFolderTest, PairsStampedCamerasOfUnequalLength) {
   Touch({"cam0/1403636579763555584.png", "cam0/1403636579813555456.png",
          "cam1/1403636579763555584.png"});
   EXPECT_EQ(Open().cameras.size(), 2u);
 }
 
-TEST_F(RecordingTest, RefusesAStrayImageAmongStampedOnes) {
+TEST_F(RecordingFolderTest, RefusesAStrayImageAmongStampedOnes) {
   Touch({"cam0/1403636579763555584.png", "cam0/preview.png"});
   EXPECT_THAT(ErrorOf(), HasSubstr("preview.png"));
 }
 
-TEST_F(RecordingTest, RefusesTwoImagesOfOneStamp) {
+TEST_F(RecordingFolderTest, RefusesTwoImagesOfOneStamp) {
   Touch({"cam0/1403636579763555584.png", "cam0/1403636579763555584.jpg"});
   EXPECT_THAT(ErrorOf(), HasSubstr("two images of one stamp"));
 }
 
-TEST_F(RecordingTest, RefusesAGapAmongTheCameras) {
+TEST_F(RecordingFolderTest, RefusesAGapAmongTheCameras) {
   folder_.Write("cam0_corners.csv", kCorners);
   folder_.Write("cam2_corners.csv", kCorners);
   EXPECT_THAT(ErrorOf(), AllOf(HasSubstr("cam2_corners.csv"), HasSubstr("no cam1")));
@@ -233,16 +250,16 @@ TEST_F(RecordingTest, RefusesAGapAmongTheCameras) {
   EXPECT_THAT(ErrorOf(), HasSubstr("two corner lists"));
 }
 
-TEST_F(RecordingTest, RefusesACameraWithoutImages) {
+TEST_F(RecordingFolderTest, RefusesACameraWithoutImages) {
   Touch({"cam0/1403636579763555584.png", "cam1/data/notes.txt"});
   EXPECT_THAT(ErrorOf(), AllOf(HasSubstr("cam1/data"), HasSubstr("png")));
 }
 
-TEST_F(RecordingTest, SaysWhatWasLookedForWhereThereIsNoRecording) {
+TEST_F(RecordingFolderTest, SaysWhatWasLookedForWhereThereIsNoRecording) {
   EXPECT_THAT(ErrorOf(), AllOf(HasSubstr(folder_.path()), HasSubstr("cam0_corners.csv"),
                                HasSubstr("cam0/data"), HasSubstr("png")));
-  EXPECT_THROW(static_cast<void>(OpenRecording(folder_.path() + "/absent", {})), InputError);
-  EXPECT_THROW(static_cast<void>(OpenRecording(folder_.Write("file", ""), {})), InputError);
+  EXPECT_THROW(static_cast<void>(OpenRecordingFolder(folder_.path() + "/absent", {})), InputError);
+  EXPECT_THROW(static_cast<void>(OpenRecordingFolder(folder_.Write("file", ""), {})), InputError);
 }
 
 }  // namespace
