@@ -128,6 +128,25 @@ Eigen::VectorXd ArrowheadCholesky::Step() const {
   return step;
 }
 
+Eigen::MatrixXd ArrowheadCholesky::ExtendedFromBorder(const Eigen::MatrixXd& border) const {
+  const int b = factor_.block_size_;
+  const int m = factor_.border_size_;
+  const int n = factor_.num_blocks_;
+  assert(border.rows() == m);
+  Eigen::MatrixXd extended(factor_.num_unknowns(), border.cols());
+  extended.bottomRows(m) = border;
+  for (int c = n - 1; c >= 0; --c) {
+    const auto panel = factor_.Panel(c);
+    auto x = extended.middleRows(c * b, b);
+    x.noalias() = -(panel.middleRows(2 * b, m).transpose() * border);
+    if (c + 1 < n) {
+      x.noalias() -= panel.middleRows(b, b).transpose() * extended.middleRows((c + 1) * b, b);
+    }
+    panel.topRows(b).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+  }
+  return extended;
+}
+
 Eigen::MatrixXd ArrowheadCholesky::BorderInformation() const {
   const int m = factor_.border_size_;
   return factor_.corner_.topLeftCorner(m, m).selfadjointView<Eigen::Lower>();

@@ -74,6 +74,13 @@ class ArrowheadCholesky {
   /// C - sum of E D^-1 E', whose inverse is the marginal covariance of the border.
   [[nodiscard]] Eigen::MatrixXd BorderInformation() const;
 
+  /// The blocks' unknowns that belong to a border's: x_c = -D^-1 E' y below which H [x; y] has only
+  /// border rows, (C - E D^-1 E') y. Of y = columns of the border's covariance, these are the
+  /// columns of H^-1.
+  /// @param border  y, one or more columns of border_size rows.
+  /// @return [x_c; y], of num_unknowns rows.
+  [[nodiscard]] Eigen::MatrixXd ExtendedFromBorder(const Eigen::MatrixXd& border) const;
+
   /// log det of the matrix.
   [[nodiscard]] double LogDeterminant() const;
 

@@ -65,6 +65,8 @@ TEST(Arrowhead, AgreesWithADenseSolver) {
       const MatrixXd marginal = H.inverse().bottomRightCorner(border_size, border_size);
       const MatrixXd identity = factor->BorderInformation() * marginal;
       EXPECT_LT((identity - MatrixXd::Identity(border_size, border_size)).norm(), 1e-9);
+      const MatrixXd columns = H.inverse().rightCols(border_size);
+      EXPECT_LE((factor->ExtendedFromBorder(marginal) - columns).norm(), 1e-9 * columns.norm());
       EXPECT_NEAR(factor->LogDeterminant(),
                   2.0 * H.llt().matrixLLT().diagonal().array().log().sum(), 1e-9);
     }
