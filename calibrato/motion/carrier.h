@@ -70,6 +70,9 @@ struct FreeCarrierLimits {
   double min_height = 0.1;             ///< Of the controlled frame above the arm's base [m].
 };
 
+/// Where the free carrier's reach is measured from, in frame b: the Panda's second joint [m].
+[[nodiscard]] Eigen::Vector3d FreeCarrierShoulder();
+
 /// Plans the motion on its carrier. The board of the rig must stay in view: its centre in front of
 /// camera 0 and inside the image at every way-point.
 ///

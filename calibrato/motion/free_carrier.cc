@@ -11,14 +11,11 @@
 namespace calibrato {
 namespace {
 
-// The Panda's second joint.
-const Eigen::Vector3d kShoulder_b(0.0, 0.0, 0.333);
-
 std::optional<Refusal> CheckPose(const Rigid3& T_b_e, const Rig& rig,
                                  const FreeCarrierLimits& limits) {
   Refusal refusal;
   refusal.unit = "m";
-  const double reach = (T_b_e.t - kShoulder_b).norm();
+  const double reach = (T_b_e.t - FreeCarrierShoulder()).norm();
   if (!(reach <= limits.reach)) {
     refusal.limit = "reach from the shoulder";
     refusal.value = reach;
@@ -51,6 +48,8 @@ double SmallestStretch(const BasePose& base, const Loop& loop, const FreeCarrier
 }
 
 }  // namespace
+
+Eigen::Vector3d FreeCarrierShoulder() { return {0.0, 0.0, 0.333}; }
 
 std::variant<TimedMotion, Refusal> PlanOnFreeCarrier(const Motion& motion, const Rig& rig) {
   const FreeCarrierLimits limits;

@@ -88,6 +88,13 @@ void AddToLoopGradient(const PoseVectorJet& jet, const PoseVectorJet& by_jet, do
       (by_jet.first.dot(jet.first) + 2.0 * by_jet.second.dot(jet.second)) / duration_s;
 }
 
+void AddOffsetGradient(const PoseVector& by_offset, double theta, LoopCoefficients* gradient) {
+  const Harmonics harmonics = HarmonicsAt(theta);
+  for (int dof = 0; dof < 6; ++dof) {
+    gradient->segment<6>(6 * dof) += by_offset[dof] * harmonics.value;
+  }
+}
+
 FrameKinematics KinematicsOf(const PoseVectorJet& jet) {
   const Vector3d rates = jet.first.tail<3>();
   const BodyRates body = BodyRatesAt(jet.value[3], jet.value[4]);

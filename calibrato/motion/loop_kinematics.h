@@ -29,6 +29,9 @@ struct LoopGradient {
 void AddToLoopGradient(const PoseVectorJet& jet, const PoseVectorJet& by_jet, double s,
                        double duration_s, LoopGradient* gradient);
 
+/// Adds a number's derivatives by the offset at a phase to those by the coefficients.
+void AddOffsetGradient(const PoseVector& by_offset, double theta, LoopCoefficients* gradient);
+
 /// The controlled frame e in the arm's base frame b; angular quantities in its own axes.
 struct FrameKinematics {
   Eigen::Matrix3d R_b_e;
