@@ -12,9 +12,10 @@ Plan PlanAction(const HistoryModel& model, const History& history, int num_steps
   constexpr int kActionSize = LoopCoefficients::RowsAtCompileTime;
   // The history is the same for all particles and iterations.
   const EncodedHistory encoded = model.Encode(history);
-  const SwarmObjective predicted_return = [&](const Eigen::MatrixXd& actions, bool want_gradients) {
+  const SearchObjective predicted_return = [&](const Eigen::MatrixXd& actions,
+                                               bool want_gradients) {
     PredictedReturns predicted = model.PredictReturns(encoded, actions, want_gradients);
-    return SwarmValues{std::move(predicted.values), std::move(predicted.gradients)};
+    return SearchValues{std::move(predicted.values), std::move(predicted.gradients)};
   };
   const SwarmResult swarm =
       MaximiseBySwarm(predicted_return, kActionSize * num_steps, remembered, options.swarm, rng);

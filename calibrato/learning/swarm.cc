@@ -40,14 +40,14 @@ void UpdateBest(const Eigen::MatrixXd& positions, const Eigen::VectorXd& values,
 
 }  // namespace
 
-SwarmResult MaximiseBySwarm(const SwarmObjective& objective, int dimension,
+SwarmResult MaximiseBySwarm(const SearchObjective& objective, int dimension,
                             const Eigen::MatrixXd& start, const SwarmOptions& options, Rng& rng) {
   assert(start.cols() == 0 || start.rows() == dimension);
   Eigen::MatrixXd positions = StartPositions(dimension, start, options, rng);
   Eigen::MatrixXd velocities = Eigen::MatrixXd::Zero(dimension, options.num_particles);
   SwarmResult result;
   for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
-    const SwarmValues here = objective(positions, /*want_gradients=*/true);
+    const SearchValues here = objective(positions, /*want_gradients=*/true);
     UpdateBest(positions, here.values, result);
     velocities =
         options.inertia_weight * velocities +
@@ -55,7 +55,7 @@ SwarmResult MaximiseBySwarm(const SwarmObjective& objective, int dimension,
         options.gradient_weight * here.gradients;
     positions = (positions + velocities).cwiseMax(-options.limit).cwiseMin(options.limit);
   }
-  const SwarmValues there = objective(positions, /*want_gradients=*/false);
+  const SearchValues there = objective(positions, /*want_gradients=*/false);
   UpdateBest(positions, there.values, result);
 
   std::vector<Eigen::Index> order(static_cast<size_t>(options.num_particles));

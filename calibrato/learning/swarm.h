@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "calibrato/base/rng.h"
+#include "calibrato/learning/search.h"
 
 namespace calibrato {
 
@@ -18,17 +18,6 @@ struct SwarmOptions {
   double inertia_weight = 1e-5;   ///< omega_0, >= 0.
   double limit = 0.015;           ///< Of every coordinate, > 0 (paper, appendix A).
 };
-
-/// What is to be maximised, at many positions at once.
-struct SwarmValues {
-  Eigen::VectorXd values;     ///< One a particle.
-  Eigen::MatrixXd gradients;  ///< Of the value by position, one column a particle; empty unless
-                              ///< asked for.
-};
-
-/// @param positions  One column a particle.
-using SwarmObjective =
-    std::function<SwarmValues(const Eigen::MatrixXd& positions, bool want_gradients)>;
 
 struct SwarmResult {
   Eigen::MatrixXd positions;      ///< Where the particles ended, the best first.
@@ -46,7 +35,7 @@ struct SwarmResult {
 ///
 /// @param start  One column a particle, each of `dimension` rows; at most M (what is beyond is not
 ///     used).
-[[nodiscard]] SwarmResult MaximiseBySwarm(const SwarmObjective& objective, int dimension,
+[[nodiscard]] SwarmResult MaximiseBySwarm(const SearchObjective& objective, int dimension,
                                           const Eigen::MatrixXd& start, const SwarmOptions& options,
                                           Rng& rng);
 

@@ -9,10 +9,10 @@ namespace calibrato {
 namespace {
 
 // -|x - centre|^2, whose gradient is -2 (x - centre).
-SwarmObjective Bowl(const Eigen::VectorXd& centre) {
+SearchObjective Bowl(const Eigen::VectorXd& centre) {
   return [centre](const Eigen::MatrixXd& x, bool want_gradients) {
     const Eigen::MatrixXd away = x.colwise() - centre;
-    SwarmValues values{-away.colwise().squaredNorm().transpose(), {}};
+    SearchValues values{-away.colwise().squaredNorm().transpose(), {}};
     if (want_gradients) values.gradients = -2.0 * away;
     return values;
   };
@@ -128,8 +128,8 @@ TEST(Swarm, KeepsTheBestPositionEverSeenThoughParticlesMoveOn) {
   options.social_weight = 0.0;
   Eigen::MatrixXd start(1, 3);
   start << 0.1, 0.8, 0.9;
-  const SwarmObjective jumpy = [](const Eigen::MatrixXd& x, bool) {
-    return SwarmValues{-x.row(0).array().abs().transpose(), Eigen::MatrixXd::Constant(1, 3, 0.5)};
+  const SearchObjective jumpy = [](const Eigen::MatrixXd& x, bool) {
+    return SearchValues{-x.row(0).array().abs().transpose(), Eigen::MatrixXd::Constant(1, 3, 0.5)};
   };
   Rng rng(7);
   const SwarmResult result = MaximiseBySwarm(jumpy, 1, start, options, rng);
@@ -144,8 +144,8 @@ TEST(Swarm, RanksNanBelowAllElse) {
   options.num_iterations = 0;
   Eigen::MatrixXd start(1, 3);
   start << 0.1, 0.2, 0.3;
-  const SwarmObjective broken = [](const Eigen::MatrixXd&, bool) {
-    return SwarmValues{Eigen::Vector3d(std::numeric_limits<double>::quiet_NaN(), -5.0, -1.0), {}};
+  const SearchObjective broken = [](const Eigen::MatrixXd&, bool) {
+    return SearchValues{Eigen::Vector3d(std::numeric_limits<double>::quiet_NaN(), -5.0, -1.0), {}};
   };
   Rng rng(8);
   const SwarmResult result = MaximiseBySwarm(broken, 1, start, options, rng);
