@@ -44,6 +44,10 @@ CarrierState TimedMotion::At(double t_s) const {
                      QuinticPhaseAt(t_s, loop_duration_s[i]));
 }
 
+CarrierPath PlannedPath(const TimedMotion& motion) {
+  return {motion.duration_s(), [motion](double t_s) { return motion.At(t_s); }};
+}
+
 std::string Refusal::Describe() const {
   // As many digits as it takes to see the difference.
   constexpr int kFewDigits = 3;

@@ -22,7 +22,7 @@ CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* w
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
     const std::vector<std::string> unknown =
-        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise"});
+        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise", "arm"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   Rig rig;
@@ -52,6 +52,9 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (const Value* noise = value.Find("noise")) {
     rig.corner_noise = CornerNoiseFromValue(*noise, warnings);
   }
+  if (const Value* arm = value.Find("arm")) {
+    rig.arm_disturbances = ArmDisturbancesFromValue(*arm, warnings);
+  }
   return rig;
 }
 
@@ -72,7 +75,8 @@ Value ToValue(const Rig& rig) {
       .Set("board", std::move(board))
       .Set("T_e_c0", ToValue(rig.T_e_c0))
       .Set("exposure_s", rig.exposure_s)
-      .Set("noise", std::move(noise));
+      .Set("noise", std::move(noise))
+      .Set("arm", ToValue(rig.arm_disturbances));
   return value;
 }
 

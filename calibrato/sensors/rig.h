@@ -6,6 +6,7 @@
 #include "calibrato/base/time.h"
 #include "calibrato/base/value.h"
 #include "calibrato/geometry/rigid3.h"
+#include "calibrato/sensors/arm_disturbances.h"
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/camera_chain.h"
 #include "calibrato/sensors/imu.h"
@@ -37,6 +38,7 @@ struct Rig {
   Duration time_offset_i_c;  ///< t_i = t_c + time_offset_i_c
   ImuNoise imu_noise;
   ImuDisturbances imu_disturbances;
+  ArmDisturbances arm_disturbances;
   Board board;
   Rigid3 T_w_g;             ///< Where the board stands.
   double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.

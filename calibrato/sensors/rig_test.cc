@@ -21,6 +21,7 @@ Rig MakeRig() {
   rig.T_w_g = {ExpSo3({1.0, 2.0, 0.5}), {-2.0, -0.5, 0.7}};
   rig.exposure_s = 0.005;
   rig.corner_noise.stddev_px = 0.2;
+  rig.arm_disturbances = {.mode_hz = 17.0, .mode_damping = 0.1, .torque_ripple = 0.3};
   return rig;
 }
 
@@ -34,6 +35,9 @@ TEST(Rig, RoundTrip) {
   EXPECT_EQ(rig.board, MakeRig().board);
   EXPECT_EQ(rig.corner_noise.stddev_px, 0.2);
   EXPECT_EQ(rig.exposure_s, 0.005);
+  EXPECT_EQ(rig.arm_disturbances.mode_hz, 17.0);
+  EXPECT_EQ(rig.arm_disturbances.mode_damping, 0.1);
+  EXPECT_EQ(rig.arm_disturbances.torque_ripple, 0.3);
 }
 
 TEST(Rig, WhatIsOptionalHasDefaults) {
@@ -43,6 +47,13 @@ TEST(Rig, WhatIsOptionalHasDefaults) {
   const Rig rig = RigFromValue(ParseYaml(text, "rig.yaml"), nullptr);
   EXPECT_EQ(rig.exposure_s, 0.0);
   EXPECT_EQ(rig.corner_noise.stddev_px, 0.1);
+}
+
+TEST(Rig, AnArmThatSwingsFasterThanItIsSimulatedIsAnError) {
+  std::string text = ToYaml(ToValue(MakeRig()));
+  const std::string value = "mode_hz: 17";
+  text.replace(text.find(value), value.size(), "mode_hz: 170");
+  EXPECT_THROW((void)RigFromValue(ParseYaml(text, "rig.yaml"), nullptr), InputError);
 }
 
 TEST(Rig, ANegativeDensityIsAnErrorWithLineAndKey) {

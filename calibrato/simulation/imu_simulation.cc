@@ -56,11 +56,8 @@ Vector3d Digital(Vector3d value, double range, double resolution) {
   return value;
 }
 
-}  // namespace
-
-ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
+ImuMotion ImuOn(const Rig& rig, const CarrierState& state) {
   static const Eigen::Matrix3d R_w_b = ArmBaseInWorld().R;
-  const CarrierState state = motion.At(t_s);
   const Eigen::Matrix3d R_e_b = state.T_b_e.R.transpose();
   const ImuMotion motion_e{
       .R_w_i = R_w_b * state.T_b_e.R,
@@ -70,6 +67,16 @@ ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
       .accel_w = R_w_b * state.acceleration_b,
   };
   return MotionOfFrame(motion_e, rig.T_e_c0 * rig.T_c0_i);
+}
+
+}  // namespace
+
+ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
+  return ImuOn(rig, motion.At(t_s));
+}
+
+ImuMotion ImuMotionAt(const Rig& rig, const CarrierPath& path, double t_s) {
+  return ImuOn(rig, path.at(t_s));
 }
 
 SimulatedImu SimulateImu(const std::function<ImuMotion(double t_s)>& motion_at, double duration_s,
@@ -114,7 +121,11 @@ SimulatedImu SimulateImu(const std::function<ImuMotion(double t_s)>& motion_at, 
 }
 
 SimulatedImu SimulateImu(const Rig& rig, const TimedMotion& motion, Time start, Rng& rng) {
-  return SimulateImu([&](double t_s) { return ImuMotionAt(rig, motion, t_s); }, motion.duration_s(),
+  return SimulateImu(rig, PlannedPath(motion), start, rng);
+}
+
+SimulatedImu SimulateImu(const Rig& rig, const CarrierPath& path, Time start, Rng& rng) {
+  return SimulateImu([&](double t_s) { return ImuMotionAt(rig, path, t_s); }, path.duration_s,
                      {0.0, 0.0, -kStandardGravity}, rig.imu_noise, rig.imu_disturbances,
                      start + rig.time_offset_i_c, rng);
 }
