@@ -98,6 +98,7 @@ double Distance(const Capsule& capsule, const Box& box) {
     const Vector3d beyond = (a + s * along).cwiseAbs() - box.half_size;
     return beyond.cwiseMax(0.0).norm() + std::min(beyond.maxCoeff(), 0.0);
   };
+  if (along.isZero(0.0)) return distance_at(0.0) - capsule.radius_m;
   double low = 0.0;
   double high = 1.0;
   constexpr int kNumCuts = 40;  // each by a third
@@ -146,32 +147,44 @@ double Distance(const Capsule& first, const Capsule& second) {
   return least - first.radius_m - second.radius_m;
 }
 
-Clearance LeastClearance(const JointVector& q, const Rig& rig,
-                         const std::vector<NamedBox>& surroundings) {
-  const PandaAxes axes = AxesOf(q);
-  std::vector<ArmPart> parts = ArmParts();
+ClearanceCheck::ClearanceCheck(const Rig& rig) : parts_(ArmParts()), things_(SurroundingsOf(rig)) {
   const Rigid3 T_e_i = rig.T_e_c0 * rig.T_c0_i;
-  parts.push_back({"camera", kHand, {rig.T_e_c0.t, rig.T_e_c0.t, kSensorRadius}});
-  parts.push_back({"IMU", kHand, {T_e_i.t, T_e_i.t, kSensorRadius}});
-  std::vector<Capsule> capsules;
-  for (const ArmPart& part : parts) capsules.push_back(InBase(axes, part));
+  parts_.push_back({"camera", kHand, {rig.T_e_c0.t, rig.T_e_c0.t, kSensorRadius}});
+  parts_.push_back({"IMU", kHand, {T_e_i.t, T_e_i.t, kSensorRadius}});
+  for (const KeepOutBox& box : rig.arm_limits.keep_out) {
+    things_.push_back({box.name, {box.T_b_box, 0.5 * box.size_m}});
+  }
+}
 
-  Clearance least{std::numeric_limits<double>::infinity(), ""};
+Clearance ClearanceCheck::Least(const JointVector& q) const {
+  const PandaAxes axes = AxesOf(q);
+  std::vector<Capsule> capsules;
+  for (const ArmPart& part : parts_) capsules.push_back(InBase(axes, part));
+  double least = std::numeric_limits<double>::infinity();
+  const std::string* first = nullptr;
+  const std::string* second = nullptr;
   const auto consider = [&](double distance_m, const std::string& a, const std::string& b) {
-    if (distance_m < least.distance_m) least = {distance_m, a + " to " + b};
+    if (!(distance_m < least)) return;
+    least = distance_m;
+    first = &a;
+    second = &b;
   };
-  for (size_t i = 0; i < parts.size(); ++i) {
-    for (const NamedBox& thing : surroundings) {
-      if (parts[i].link == 1) continue;
-      consider(Distance(capsules[i], thing.box), parts[i].name, thing.name);
+  for (size_t i = 0; i < parts_.size(); ++i) {
+    for (const NamedBox& thing : things_) {
+      if (parts_[i].link == 1) continue;
+      // Not nearer than the ball around the capsule.
+      const Vector3d middle = 0.5 * (capsules[i].a + capsules[i].b);
+      const double ball = 0.5 * (capsules[i].b - capsules[i].a).norm() + capsules[i].radius_m;
+      if (Distance(Capsule{middle, middle, ball}, thing.box) > least) continue;
+      consider(Distance(capsules[i], thing.box), parts_[i].name, thing.name);
     }
     constexpr int kNeighbours = 2;
-    for (size_t j = i + 1; j < parts.size(); ++j) {
-      if (parts[j].link - parts[i].link <= kNeighbours) continue;
-      consider(Distance(capsules[i], capsules[j]), parts[i].name, parts[j].name);
+    for (size_t j = i + 1; j < parts_.size(); ++j) {
+      if (parts_[j].link - parts_[i].link <= kNeighbours) continue;
+      consider(Distance(capsules[i], capsules[j]), parts_[i].name, parts_[j].name);
     }
   }
-  return least;
+  return {least, *first + " to " + *second};
 }
 
 }  // namespace calibrato

@@ -48,10 +48,18 @@ struct Clearance {
   std::string what;  ///< "hand to table", "link 3 to hand"
 };
 
-/// How far the arm is from its surroundings and from itself. The camera and the IMU of the rig
-/// count as spheres of 20 mm on the hand. Links that touch by their build are left out: neighbours,
-/// and those with one or two links between; link 1, which can't leave its place, against boxes.
-[[nodiscard]] Clearance LeastClearance(const JointVector& q, const Rig& rig,
-                                       const std::vector<NamedBox>& surroundings);
+/// How far the arm is from its surroundings, from the boxes that its owner keeps it out of, and
+/// from itself. The camera and the IMU of the rig count as spheres of 20 mm on the hand. Links that
+/// touch by their build are left out: neighbours, and those with one link between; link 1, which
+/// can't leave its place, against boxes.
+class ClearanceCheck {
+ public:
+  explicit ClearanceCheck(const Rig& rig);
+  [[nodiscard]] Clearance Least(const JointVector& q) const;
+
+ private:
+  std::vector<ArmPart> parts_;
+  std::vector<NamedBox> things_;
+};
 
 }  // namespace calibrato

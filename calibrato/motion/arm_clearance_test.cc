@@ -64,19 +64,19 @@ TEST(Distance, OfACapsuleAndABoxIsTheLeastOverItsLine) {
   }
 }
 
-TEST(LeastClearance, AtTheStartOfTheMotionsIsWide) {
+TEST(ClearanceCheck, AtTheStartOfTheMotionsIsWide) {
   JointVector ready;
   ready << 0.0, -0.785, 0.0, -2.356, 0.0, 1.571, 0.785;
   const Rig rig = PaperRig();
-  const Clearance clearance = LeastClearance(ready, rig, SurroundingsOf(rig));
+  const Clearance clearance = ClearanceCheck(rig).Least(ready);
   EXPECT_GT(clearance.distance_m, 0.05) << clearance.what;
 }
 
-TEST(LeastClearance, NamesTheTableUnderALowHand) {
+TEST(ClearanceCheck, NamesTheTableUnderALowHand) {
   const Rig rig = PaperRig();
   JointVector low;
   low << 0.0, 1.1, 0.0, -1.9, 0.0, 3.0, 0.785;
-  const Clearance clearance = LeastClearance(low, rig, SurroundingsOf(rig));
+  const Clearance clearance = ClearanceCheck(rig).Least(low);
   EXPECT_LT(clearance.distance_m, 0.0);
   EXPECT_NE(clearance.what.find("to table"), std::string::npos) << clearance.what;
 }

@@ -126,6 +126,10 @@ const PandaLimits& Limits() {
   return limits;
 }
 
+double JointLimitExcess(const JointVector& q, const JointRange& range) {
+  return (range.lower - q).cwiseMax(q - range.upper).maxCoeff();
+}
+
 PandaAxes AxesOf(const JointVector& q) {
   static const KDL::Chain chain = MakeChain();
   PandaAxes axes;

@@ -32,6 +32,14 @@ struct PandaLimits {
 };
 [[nodiscard]] const PandaLimits& Limits();
 
+/// Where the joints may be: the arm's own limits, or narrower ones.
+struct JointRange {
+  JointVector lower = Limits().lower;
+  JointVector upper = Limits().upper;
+};
+/// How far the worst joint lies beyond its limit; negative inside all limits [rad].
+[[nodiscard]] double JointLimitExcess(const JointVector& q, const JointRange& range = {});
+
 /// Where the joints turn.
 struct PandaAxes {
   std::array<Rigid3, 7> T_b_link;  ///< Of link k: z along the axis of joint k, turned by it.

@@ -18,9 +18,9 @@ struct ArmDisturbances {
   double torque_ripple = 0.0;
 };
 
-/// The optional key `arm` of RIG.yaml: {mode_hz, mode_damping, torque_ripple_nm_s_rad}, each
-/// optional. @throws InputError with line and key. Unknown keys are appended to warnings (may be
-/// null).
+/// RIG.yaml's optional key `arm.disturbances`: {mode_hz, mode_damping, torque_ripple_nm_s_rad},
+/// each optional. @throws InputError with line and key. Unknown keys are appended to warnings (may
+/// be null).
 [[nodiscard]] ArmDisturbances ArmDisturbancesFromValue(const Value& value,
                                                        std::vector<std::string>* warnings);
 [[nodiscard]] Value ToValue(const ArmDisturbances& disturbances);

@@ -21,8 +21,8 @@ CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* w
 
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
-    const std::vector<std::string> unknown =
-        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise", "arm"});
+    const std::vector<std::string> unknown = value.UnknownKeys(
+        {"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise", "images", "arm"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   Rig rig;
@@ -52,8 +52,20 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (const Value* noise = value.Find("noise")) {
     rig.corner_noise = CornerNoiseFromValue(*noise, warnings);
   }
+  if (const Value* images = value.Find("images")) {
+    rig.image_disturbances = ImageDisturbancesFromValue(*images, warnings);
+  }
   if (const Value* arm = value.Find("arm")) {
-    rig.arm_disturbances = ArmDisturbancesFromValue(*arm, warnings);
+    if (warnings != nullptr) {
+      const std::vector<std::string> unknown = arm->UnknownKeys({"limits", "disturbances"});
+      warnings->insert(warnings->end(), unknown.begin(), unknown.end());
+    }
+    if (const Value* limits = arm->Find("limits")) {
+      rig.arm_limits = ArmLimitsFromValue(*limits, warnings);
+    }
+    if (const Value* disturbances = arm->Find("disturbances")) {
+      rig.arm_disturbances = ArmDisturbancesFromValue(*disturbances, warnings);
+    }
   }
   return rig;
 }
@@ -69,6 +81,8 @@ Value ToValue(const Rig& rig) {
       .Set("blur_factor", rig.corner_noise.blur_factor)
       .Set("blur_at_half", rig.corner_noise.blur_at_half)
       .Set("blur_slope", rig.corner_noise.blur_slope);
+  Value arm = Value::Object();
+  arm.Set("limits", ToValue(rig.arm_limits)).Set("disturbances", ToValue(rig.arm_disturbances));
   Value value = Value::Object();
   value.Set("cameras", ToValue(rig.cameras))
       .Set("imu", std::move(imu))
@@ -76,7 +90,8 @@ Value ToValue(const Rig& rig) {
       .Set("T_e_c0", ToValue(rig.T_e_c0))
       .Set("exposure_s", rig.exposure_s)
       .Set("noise", std::move(noise))
-      .Set("arm", ToValue(rig.arm_disturbances));
+      .Set("images", ToValue(rig.image_disturbances))
+      .Set("arm", std::move(arm));
   return value;
 }
 

@@ -7,8 +7,10 @@
 #include "calibrato/base/value.h"
 #include "calibrato/geometry/rigid3.h"
 #include "calibrato/sensors/arm_disturbances.h"
+#include "calibrato/sensors/arm_limits.h"
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/camera_chain.h"
+#include "calibrato/sensors/image_disturbances.h"
 #include "calibrato/sensors/imu.h"
 #include "calibrato/sensors/imu_disturbances.h"
 
@@ -38,11 +40,13 @@ struct Rig {
   Duration time_offset_i_c;  ///< t_i = t_c + time_offset_i_c
   ImuNoise imu_noise;
   ImuDisturbances imu_disturbances;
+  ArmLimits arm_limits;
   ArmDisturbances arm_disturbances;
   Board board;
-  Rigid3 T_w_g;             ///< Where the board stands.
-  double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.
-  CornerNoise corner_noise;
+  Rigid3 T_w_g;                          ///< Where the board stands.
+  double exposure_s = 0.0;               ///< [s] >= 0; 0 means no motion blur.
+  CornerNoise corner_noise;              ///< Fidelity `fast` and `physical`.
+  ImageDisturbances image_disturbances;  ///< Fidelity `rendered`.
 };
 
 /// RIG.yaml (docs/formats.md section 3). @throws InputError with line and key. Unknown keys are
