@@ -9,9 +9,8 @@
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
-#include "calibrato/simulation/fast_simulation.h"
-#include "calibrato/simulation/imu_simulation.h"
 #include "calibrato/simulation/simulated_recording.h"
+#include "calibrato/simulation/simulated_run.h"
 
 namespace calibrato {
 namespace {
@@ -29,9 +28,10 @@ struct Options {
 };
 
 ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
-  if (options.fidelity != "fast") {
-    throw InputError({"--fidelity " + options.fidelity + " is not in this version", "", "",
-                      "use --fidelity fast"});
+  const Fidelity fidelity = FidelityFromName(options.fidelity);
+  if (fidelity == Fidelity::kRendered) {
+    throw InputError({"--fidelity rendered is not in this version", "", "",
+                      "use --fidelity fast or --fidelity physical"});
   }
   if (!global.force && std::filesystem::exists(options.out)) {
     throw InputError({"there is something at --out already", options.out,
@@ -52,35 +52,39 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
     planned = PlanScaledToFit(motion, rig);
   }
   const auto& timed = std::get<TimedMotion>(planned);
-  Rng noise = Rng(global.seed).Stream("simulate");
-  const SimulatedFrames frames = SimulateFrames(rig, timed, kSimulationStart, noise);
-  if (frames.views.empty()) {
+  const SimulatedRun run = SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed));
+  if (run.frames.views.empty()) {
     throw InputError({"the camera never saw the whole board", options.motion,
-                      std::to_string(frames.num_frames) + " frames were taken",
+                      std::to_string(run.frames.num_frames) + " frames were taken",
                       "check T_w_g and T_e_c0 of the rig"});
   }
-  Rng imu_noise = Rng(global.seed).Stream("simulate imu");
-  const SimulatedImu imu = SimulateImu(rig, timed, kSimulationStart, imu_noise);
-  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, frames, imu)) {
+  for (auto& [name, content] :
+       SimulatedRecordingFiles(rig, timed, run.path, kSimulationStart, run.frames, run.imu)) {
     out.Add(name, content);
   }
   out.Commit();
   Value summary = Value::Object();
   summary.Set("kind", "simulation")
       .Set("out", options.out)
-      .Set("num_frames", frames.num_frames)
-      .Set("num_views", frames.views.size())
-      .Set("num_out_of_image", frames.num_out_of_image)
-      .Set("num_lost_to_blur", frames.num_lost_to_blur)
-      .Set("num_imu_samples", imu.stream.gyro.size())
+      .Set("fidelity", FidelityName(fidelity))
+      .Set("num_frames", run.frames.num_frames)
+      .Set("num_views", run.frames.views.size())
+      .Set("num_out_of_image", run.frames.num_out_of_image)
+      .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
+      .Set("num_imu_samples", run.imu.stream.gyro.size())
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
       .Set("path_length_m", PathLength(timed.motion));
+  if (run.tracking) {
+    summary.Set("max_position_error_m", run.tracking->max_position_error_m)
+        .Set("max_rotation_error_rad", run.tracking->max_rotation_error_rad)
+        .Set("max_torque_share", run.tracking->max_torque_share);
+  }
   if (global.json) {
     std::fputs(ToJson(summary).c_str(), stdout);
   } else if (!global.quiet) {
     std::printf("%zu of %d frames show the whole board; %.2f s, path %.3f m, scale %.3f\n%s\n",
-                frames.views.size(), frames.num_frames, timed.duration_s(),
+                run.frames.views.size(), run.frames.num_frames, timed.duration_s(),
                 PathLength(timed.motion), timed.scale, options.out.c_str());
   }
   return kDone;
@@ -93,7 +97,8 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
   app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
   app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
-  app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
+  app.add_option("--fidelity", options->fidelity, "fast or physical (the arm's dynamics)")
+      ->capture_default_str();
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");
   app.add_option("--out", options->out, "Folder for the recording")->required();

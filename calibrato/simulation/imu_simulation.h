@@ -32,7 +32,8 @@ struct SimulatedImu {
 /// at those of the disturbances. Numbers are drawn alike for every setting, so that a disturbance
 /// switched on changes no draw.
 ///
-/// The low-pass is exact for what changes linearly between two samples, and begins settled.
+/// The low-pass is exact for what changes linearly between fifths of the sampling period, and
+/// begins settled.
 /// @param motion_at  For t_s in [0, duration_s), in order of time [s].
 /// @param gravity_w  [m/s^2]
 /// @param start  The IMU's clock at t_s = 0, where the first sample is taken; the next ones follow

@@ -28,7 +28,7 @@ struct Simulated {
     frames = SimulateFrames(rig, motion, start, rng);
     Rng imu_rng(2);
     imu = SimulateImu(rig, motion, start, imu_rng);
-    files = SimulatedRecordingFiles(rig, motion, start, frames, imu);
+    files = SimulatedRecordingFiles(rig, motion, PlannedPath(motion), start, frames, imu);
   }
 };
 
