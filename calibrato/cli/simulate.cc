@@ -29,10 +29,6 @@ struct Options {
 
 ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   const Fidelity fidelity = FidelityFromName(options.fidelity);
-  if (fidelity == Fidelity::kRendered) {
-    throw InputError({"--fidelity rendered is not in this version", "", "",
-                      "use --fidelity fast or --fidelity physical"});
-  }
   if (!global.force && std::filesystem::exists(options.out)) {
     throw InputError({"there is something at --out already", options.out,
                       "a recording is not replaced unasked", "choose another name or add --force"});
@@ -53,13 +49,13 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   }
   const auto& timed = std::get<TimedMotion>(planned);
   const SimulatedRun run = SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed));
-  if (run.frames.views.empty()) {
+  const size_t num_views = run.images.empty() ? run.frames.views.size() : run.images.size();
+  if (num_views == 0) {
     throw InputError({"the camera never saw the whole board", options.motion,
                       std::to_string(run.frames.num_frames) + " frames were taken",
                       "check T_w_g and T_e_c0 of the rig"});
   }
-  for (auto& [name, content] :
-       SimulatedRecordingFiles(rig, timed, run.path, kSimulationStart, run.frames, run.imu)) {
+  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, run)) {
     out.Add(name, content);
   }
   out.Commit();
@@ -68,7 +64,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       .Set("out", options.out)
       .Set("fidelity", FidelityName(fidelity))
       .Set("num_frames", run.frames.num_frames)
-      .Set("num_views", run.frames.views.size())
+      .Set(run.images.empty() ? "num_views" : "num_images", num_views)
       .Set("num_out_of_image", run.frames.num_out_of_image)
       .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
       .Set("num_imu_samples", run.imu.stream.gyro.size())
@@ -83,9 +79,10 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   if (global.json) {
     std::fputs(ToJson(summary).c_str(), stdout);
   } else if (!global.quiet) {
-    std::printf("%zu of %d frames show the whole board; %.2f s, path %.3f m, scale %.3f\n%s\n",
-                run.frames.views.size(), run.frames.num_frames, timed.duration_s(),
-                PathLength(timed.motion), timed.scale, options.out.c_str());
+    const char* what = run.images.empty() ? "show the whole board" : "were rendered";
+    std::printf("%zu of %d frames %s; %.2f s, path %.3f m, scale %.3f\n%s\n", num_views,
+                run.frames.num_frames, what, timed.duration_s(), PathLength(timed.motion),
+                timed.scale, options.out.c_str());
   }
   return kDone;
 }
@@ -97,7 +94,8 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
   app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
   app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
-  app.add_option("--fidelity", options->fidelity, "fast or physical (the arm's dynamics)")
+  app.add_option("--fidelity", options->fidelity,
+                 "fast, physical (the arm's dynamics) or rendered (images too)")
       ->capture_default_str();
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");

@@ -11,6 +11,7 @@
 #include "calibrato/geometry/rpy.h"
 #include "calibrato/motion/arm_carrier.h"
 #include "calibrato/motion/free_carrier.h"
+#include "calibrato/motion/joint_motion.h"
 #include "calibrato/motion/loop_state.h"
 
 namespace calibrato {
@@ -45,7 +46,13 @@ CarrierState TimedMotion::At(double t_s) const {
 }
 
 CarrierPath PlannedPath(const TimedMotion& motion) {
-  return {motion.duration_s(), [motion](double t_s) { return motion.At(t_s); }};
+  CarrierPath path{motion.duration_s(), [motion](double t_s) { return motion.At(t_s); }, {}};
+  if (!motion.joint_path.empty()) {
+    path.joints = [joints = JointTrajectory(motion)](double t_s) {
+      return joints.At(t_s).position;
+    };
+  }
+  return path;
 }
 
 std::string Refusal::Describe() const {

@@ -50,6 +50,7 @@ struct TimedMotion {
 struct CarrierPath {
   double duration_s = 0.0;
   std::function<CarrierState(double t_s)> at;
+  std::function<Eigen::Matrix<double, 7, 1>(double t_s)> joints;  ///< [rad]; empty without an arm.
 };
 [[nodiscard]] CarrierPath PlannedPath(const TimedMotion& motion);
 

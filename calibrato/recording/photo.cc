@@ -79,4 +79,16 @@ GreyImage DecodePhoto(const EncodedFile& file, const std::string& where) {
   return Grey(ExamineEncodedImage(file.bytes, where), file.encoding, where);
 }
 
+std::string EncodePng(const GreyImage& image) {
+  // OpenCV's header has no room for "will not be changed".
+  const cv::Mat pixels(image.resolution.height, image.resolution.width, CV_8UC1,
+                       const_cast<uint8_t*>(image.pixels.data()));  // NOLINT
+  std::vector<uint8_t> bytes;
+  if (!cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    throw InputError({"cannot write an image", "", "OpenCV cannot encode PNG",
+                      "install libopencv-imgcodecs with PNG"});
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace calibrato

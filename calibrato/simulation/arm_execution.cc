@@ -194,8 +194,12 @@ ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig, const TimedMoti
 CarrierPath PathOf(const ArmExecution& execution, double duration_s) {
   assert(execution.position.size() > 3);
   const auto position = std::make_shared<const std::vector<JointVector>>(execution.position);
-  return {duration_s, [position, step_s = execution.step_s](double t_s) {
+  return {duration_s,
+          [position, step_s = execution.step_s](double t_s) {
             return CarrierStateOf(JointsAt(*position, step_s, t_s));
+          },
+          [position, step_s = execution.step_s](double t_s) {
+            return JointsAt(*position, step_s, t_s).position;
           }};
 }
 

@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -30,8 +32,12 @@ InputError BadScene(const std::string& why) {
 }
 
 mjModel* Compiled(std::string_view xml) {
-  // Else MuJoCo writes warnings into a file where it runs.
+  // Else MuJoCo writes warnings into a file where it runs, and at an error waits for a key.
   mju_user_warning = [](const char*) {};
+  mju_user_error = [](const char* what) {
+    std::fprintf(stderr, "MuJoCo: %s\n", what);
+    std::abort();
+  };
   if (xml.empty()) throw BadScene("it is empty");
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());

@@ -81,19 +81,24 @@ std::string TimedMotionYaml(const TimedMotion& timed) {
 }  // namespace
 
 std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
-                                                           const TimedMotion& motion,
-                                                           const CarrierPath& path, Time start,
-                                                           const SimulatedFrames& frames,
-                                                           const SimulatedImu& imu) {
-  return {{"cam0_corners.csv", CornerListText(frames.views, PointsPerTag(rig.board))},
-          {"imu0.csv", ImuListText(imu.stream)},
-          {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
-          {"sensor.yaml", SensorYaml(rig.cameras.front())},
-          {"target.yaml", ToYaml(ToValue(rig.board))},
-          {"rig.yaml", ToYaml(ToValue(rig))},
-          {"motion.yaml", TimedMotionYaml(motion)},
-          {"truth.yaml", TruthYaml(rig, imu)},
-          {"truth_poses.csv", TruthPoses(rig, path, start)}};
+                                                           const TimedMotion& motion, Time start,
+                                                           const SimulatedRun& run) {
+  std::map<std::string, std::string> files = {
+      {"imu0.csv", ImuListText(run.imu.stream)},
+      {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
+      {"sensor.yaml", SensorYaml(rig.cameras.front())},
+      {"target.yaml", ToYaml(ToValue(rig.board))},
+      {"rig.yaml", ToYaml(ToValue(rig))},
+      {"motion.yaml", TimedMotionYaml(motion)},
+      {"truth.yaml", TruthYaml(rig, run.imu)},
+      {"truth_poses.csv", TruthPoses(rig, run.path, start)}};
+  if (run.images.empty()) {
+    files["cam0_corners.csv"] = CornerListText(run.frames.views, PointsPerTag(rig.board));
+  }
+  for (const StampedPng& image : run.images) {
+    files["cam0/data/" + std::to_string(image.stamp.nanoseconds()) + ".png"] = image.png;
+  }
+  return files;
 }
 
 }  // namespace calibrato

@@ -4,7 +4,9 @@
 #include <utility>
 
 #include "calibrato/base/input_error.h"
+#include "calibrato/recording/photo.h"
 #include "calibrato/simulation/arm_execution.h"
+#include "calibrato/simulation/rendered_camera.h"
 
 namespace calibrato {
 namespace {
@@ -26,25 +28,35 @@ Tracking Worst(const ArmExecution& execution) {
 
 SimulatedRun SimulateRun(const Rig& rig, const TimedMotion& motion, Fidelity fidelity, Time start,
                          const Rng& rng) {
-  CarrierPath path = PlannedPath(motion);
-  std::optional<Tracking> tracking;
-  if (fidelity == Fidelity::kPhysical) {
-    if (motion.motion.carrier != Carrier::kArm) {
-      throw InputError({"fidelity physical is that of an arm", "",
-                        "the carrier '" + CarrierName(motion.motion.carrier) + "' has no dynamics",
-                        "use --carrier arm, or --fidelity fast"});
-    }
+  const bool is_arm = motion.motion.carrier == Carrier::kArm;
+  if (fidelity == Fidelity::kPhysical && !is_arm) {
+    throw InputError({"fidelity physical is that of an arm", "",
+                      "the carrier '" + CarrierName(motion.motion.carrier) + "' has no dynamics",
+                      "use --carrier arm, or --fidelity fast"});
+  }
+  SimulatedRun run;
+  run.path = PlannedPath(motion);
+  if (fidelity != Fidelity::kFast && is_arm) {
     Rng arm_noise = rng.Stream("simulate arm");
     const ArmScene scene(rig);
     const ArmExecution execution = ExecuteOnArm(scene, rig, motion, arm_noise);
-    tracking = Worst(execution);
-    path = PathOf(execution, motion.duration_s());
+    run.tracking = Worst(execution);
+    run.path = PathOf(execution, motion.duration_s());
   }
-  Rng noise = rng.Stream("simulate");
-  SimulatedFrames frames = SimulateFrames(rig, path, start, noise);
+  if (fidelity == Fidelity::kRendered) {
+    const auto keep = [&](const SimulatedImage& image) {
+      run.images.push_back({image.stamp, EncodePng(image.image)});
+    };
+    const int num_dropped =
+        SimulateImages(rig, run.path, start, rng.Stream("simulate images"), keep);
+    run.frames.num_frames = static_cast<int>(run.images.size()) + num_dropped;
+  } else {
+    Rng noise = rng.Stream("simulate");
+    run.frames = SimulateFrames(rig, run.path, start, noise);
+  }
   Rng imu_noise = rng.Stream("simulate imu");
-  SimulatedImu imu = SimulateImu(rig, path, start, imu_noise);
-  return {std::move(path), std::move(frames), std::move(imu), tracking};
+  run.imu = SimulateImu(rig, run.path, start, imu_noise);
+  return run;
 }
 
 }  // namespace calibrato

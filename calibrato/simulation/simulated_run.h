@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "calibrato/motion/carrier.h"
 #include "calibrato/simulation/fast_simulation.h"
@@ -16,18 +18,29 @@ struct Tracking {
   double max_torque_share = 0.0;  ///< Of the motor's limit, over all joints.
 };
 
+/// An image as its file.
+struct StampedPng {
+  Time stamp;
+  std::string png;
+};
+
 /// A motion, simulated: where the carrier was, and what the sensors made of it.
 struct SimulatedRun {
   CarrierPath path;
-  SimulatedFrames frames;
+  SimulatedFrames frames;  ///< Without views at fidelity `rendered`.
   SimulatedImu imu;
-  std::optional<Tracking> tracking;  ///< From fidelity `physical` on.
+  std::optional<Tracking> tracking;  ///< Of the arm, from fidelity `physical` on.
+  std::vector<StampedPng> images;    ///< Fidelity `rendered` alone.
 };
 
-/// Corners, IMU samples and arm draw from streams of their own, so that one does not depend on the
-/// others: those of `rng` for "simulate", "simulate imu" and "simulate arm".
+/// On the arm, fidelities `physical` and `rendered` follow its dynamics; a free carrier is rendered
+/// on its plan.
+///
+/// Corners, images, IMU samples and arm draw from streams of their own, so that one does not depend
+/// on the others: those of `rng` for "simulate", "simulate images", "simulate imu", "simulate arm".
 /// @param start  The camera's clock when the motion begins.
-/// @throws InputError: no dynamics without an arm; an arm that does not follow.
+/// @throws InputError: no dynamics without an arm; an arm that does not follow; nothing to render
+/// with (HeadlessGl).
 [[nodiscard]] SimulatedRun SimulateRun(const Rig& rig, const TimedMotion& motion, Fidelity fidelity,
                                        Time start, const Rng& rng);
 
