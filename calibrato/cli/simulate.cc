@@ -1,7 +1,10 @@
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <variant>
 
 #include "calibrato/base/files.h"
@@ -9,6 +12,8 @@
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
+#include "calibrato/recording/video_writer.h"
+#include "calibrato/simulation/outside_view.h"
 #include "calibrato/simulation/simulated_recording.h"
 #include "calibrato/simulation/simulated_run.h"
 
@@ -24,11 +29,57 @@ struct Options {
   std::string carrier;
   std::string fidelity = "fast";
   bool scale_to_fit = false;
+  bool video = false;
   std::string out;
+};
+
+// Outside view and camera's view side by side, a picture a frame.
+class MotionVideo {
+ public:
+  explicit MotionVideo(const Rig& rig) : outside_(rig) {
+    std::string name = (std::filesystem::temp_directory_path() / "calibrato-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw InputError({"cannot write the video", name, "no temporary folder can be made",
+                        "set TMPDIR to a folder that can be written"});
+    }
+    folder_ = name;
+  }
+  ~MotionVideo() {
+    file_.reset();
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  MotionVideo(const MotionVideo&) = delete;
+  MotionVideo& operator=(const MotionVideo&) = delete;
+
+  void Add(const CarrierPath& path, const SimulatedImage& image) {
+    const RgbImage picture = SideBySide(outside_.Draw(path, image.t_s), image.image);
+    if (!file_) file_.emplace(Name(), picture.resolution, kCameraRateHz);
+    file_->Add(picture);
+  }
+
+  /// Ends the file. Returns its content.
+  std::string Finish() {
+    file_.reset();
+    constexpr size_t kMaxBytes = size_t{2} << 30;
+    return ReadFile(Name(), kMaxBytes);
+  }
+
+ private:
+  [[nodiscard]] std::string Name() const { return (folder_ / "video.avi").string(); }
+
+  OutsideView outside_;
+  std::filesystem::path folder_;
+  std::optional<VideoWriter> file_;
 };
 
 ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   const Fidelity fidelity = FidelityFromName(options.fidelity);
+  if (options.video && fidelity != Fidelity::kRendered) {
+    throw InputError({"--video shows the camera's images", "",
+                      "fidelity " + FidelityName(fidelity) + " has none",
+                      "add --fidelity rendered"});
+  }
   if (!global.force && std::filesystem::exists(options.out)) {
     throw InputError({"there is something at --out already", options.out,
                       "a recording is not replaced unasked", "choose another name or add --force"});
@@ -48,7 +99,13 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
     planned = PlanScaledToFit(motion, rig);
   }
   const auto& timed = std::get<TimedMotion>(planned);
-  const SimulatedRun run = SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed));
+  std::optional<MotionVideo> video;
+  if (options.video) video.emplace(rig);
+  const auto film = [&](const CarrierPath& path, const SimulatedImage& image) {
+    if (video) video->Add(path, image);
+  };
+  const SimulatedRun run =
+      SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed), film);
   const size_t num_views = run.images.empty() ? run.frames.views.size() : run.images.size();
   if (num_views == 0) {
     throw InputError({"the camera never saw the whole board", options.motion,
@@ -58,6 +115,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, run)) {
     out.Add(name, content);
   }
+  if (video) out.Add("video.avi", video->Finish());
   out.Commit();
   Value summary = Value::Object();
   summary.Set("kind", "simulation")
@@ -99,6 +157,8 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
       ->capture_default_str();
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");
+  app.add_flag("--video", options->video,
+               "Also video.avi: the arm from outside and the camera's view");
   app.add_option("--out", options->out, "Folder for the recording")->required();
   return [options, &global] { return RunSimulate(*options, global); };
 }

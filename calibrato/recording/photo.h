@@ -24,5 +24,6 @@ namespace calibrato {
 
 /// The content of a PNG that reads back to the same pixels.
 [[nodiscard]] std::string EncodePng(const GreyImage& image);
+[[nodiscard]] std::string EncodePng(const RgbImage& image);
 
 }  // namespace calibrato

@@ -6,6 +6,7 @@
 #include <dlfcn.h>
 
 #include <array>
+#include <cassert>
 #include <cstdlib>
 
 #include "calibrato/base/input_error.h"
@@ -53,6 +54,8 @@ class HeadlessGl::Context {
   virtual ~Context() = default;
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
+
+  virtual bool MakeCurrent() = 0;
 };
 
 class HeadlessGl::Egl : public HeadlessGl::Context {
@@ -93,24 +96,26 @@ class HeadlessGl::Egl : public HeadlessGl::Context {
       context_ = library_.Get<decltype(&eglCreateContext)>("eglCreateContext")(
           display_, config, EGL_NO_CONTEXT, nullptr);
     }
-    if (context_ == EGL_NO_CONTEXT || MakeCurrent(context_) != EGL_TRUE) {
+    if (context_ == EGL_NO_CONTEXT || !MakeCurrent()) {
       throw Unavailable{"EGL's driver has no OpenGL"};
     }
     library_.Stay();
   }
   ~Egl() override {
-    (void)MakeCurrent(EGL_NO_CONTEXT);
+    (void)Bind(EGL_NO_CONTEXT);
     library_.Get<decltype(&eglDestroyContext)>("eglDestroyContext")(display_, context_);
   }
+
+  bool MakeCurrent() override { return Bind(context_); }
 
  private:
   bool Initialised() const {
     return display_ != EGL_NO_DISPLAY && library_.Get<decltype(&eglInitialize)>("eglInitialize")(
                                              display_, nullptr, nullptr) == EGL_TRUE;
   }
-  EGLBoolean MakeCurrent(EGLContext context) const {
-    return library_.Get<decltype(&eglMakeCurrent)>("eglMakeCurrent")(display_, EGL_NO_SURFACE,
-                                                                     EGL_NO_SURFACE, context);
+  bool Bind(EGLContext context) const {
+    return library_.Get<decltype(&eglMakeCurrent)>("eglMakeCurrent")(
+               display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_TRUE;
   }
 
   Library library_;
@@ -124,15 +129,18 @@ class HeadlessGl::OsMesa : public HeadlessGl::Context {
     context_ = library_.Get<decltype(&OSMesaCreateContextExt)>("OSMesaCreateContextExt")(
         OSMESA_RGBA, 24, 8, 8, nullptr);
     // Only framebuffer objects are drawn into; the context wants a buffer all the same.
-    if (context_ == nullptr ||
-        library_.Get<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")(
-            context_, buffer_.data(), GL_UNSIGNED_BYTE, kSize, kSize) != GL_TRUE) {
+    if (context_ == nullptr || !MakeCurrent()) {
       throw Unavailable{"OSMesa has no OpenGL"};
     }
     library_.Stay();
   }
   ~OsMesa() override {
     library_.Get<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext")(context_);
+  }
+
+  bool MakeCurrent() override {
+    return library_.Get<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent")(
+               context_, buffer_.data(), GL_UNSIGNED_BYTE, kSize, kSize) == GL_TRUE;
   }
 
  private:
@@ -173,5 +181,10 @@ HeadlessGl::HeadlessGl(const std::vector<std::string>& ways) {
 }
 
 HeadlessGl::~HeadlessGl() = default;
+
+void HeadlessGl::MakeCurrent() const {
+  [[maybe_unused]] const bool is_current = context_->MakeCurrent();
+  assert(is_current);
+}
 
 }  // namespace calibrato

@@ -11,9 +11,8 @@ namespace calibrato {
 /// What the environment variable MUJOCO_GL names ("off" for none at all), else both in this order.
 [[nodiscard]] std::vector<std::string> HeadlessGlWays();
 
-/// An OpenGL context without a window, current on the thread that made it, for as long as it lives.
-/// The libraries are opened when they are asked for: calibrato runs without them as long as nothing
-/// is rendered.
+/// An OpenGL context without a window. The libraries are opened when they are asked for: calibrato
+/// runs without them as long as nothing is rendered. All contexts of a process are of one way.
 class HeadlessGl {
  public:
   /// @throws InputError that says what each way lacks, if none works.
@@ -22,6 +21,8 @@ class HeadlessGl {
   HeadlessGl(const HeadlessGl&) = delete;
   HeadlessGl& operator=(const HeadlessGl&) = delete;
 
+  /// For what is drawn next on this thread.
+  void MakeCurrent() const;
   [[nodiscard]] const std::string& way() const { return way_; }
 
  private:

@@ -60,7 +60,7 @@ TEST(HeadlessGlWays, FollowTheEnvironment) {
 TEST(SceneView, DepthIsAlongTheAxisInMetres) {
   const HeadlessGl gl;
   const ArmScene scene(PaperRig());
-  SceneView view(scene);
+  SceneView view(scene, gl);
   Rigid3 T_w_c{Eigen::Matrix3d::Zero(), {-2.0, 0.9, 1.4}};
   T_w_c.R.col(0) = -Eigen::Vector3d::UnitY();
   T_w_c.R.col(1) = -Eigen::Vector3d::UnitZ();

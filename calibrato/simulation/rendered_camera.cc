@@ -143,7 +143,7 @@ class RenderedCamera::Parts {
       : rig_(rig),
         camera_(rig_.cameras.front()),
         scene_(rig),
-        view_(scene_),
+        view_(scene_, gl_),
         rays_(RaysOf(camera_)),
         pinhole_(ViewOf(rays_, camera_)),
         pattern_(PatternOf(rig.board)),

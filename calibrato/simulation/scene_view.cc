@@ -36,11 +36,14 @@ void SetCamera(const Rigid3& T_w_c, const PinholeView& view, mjvGLCamera* camera
 
 struct SceneView::Parts {
   const ArmScene& scene;
+  const HeadlessGl& gl;
   mjvScene drawn;
   mjrContext context;
 };
 
-SceneView::SceneView(const ArmScene& scene) : parts_(new Parts{scene, {}, {}}) {
+SceneView::SceneView(const ArmScene& scene, const HeadlessGl& gl)
+    : parts_(new Parts{scene, gl, {}, {}}) {
+  gl.MakeCurrent();
   mjv_defaultScene(&parts_->drawn);
   mjv_makeScene(scene.model(), &parts_->drawn, kMaxGeoms);
   mjr_defaultContext(&parts_->context);
@@ -49,6 +52,7 @@ SceneView::SceneView(const ArmScene& scene) : parts_(new Parts{scene, {}, {}}) {
 }
 
 SceneView::~SceneView() {
+  parts_->gl.MakeCurrent();
   mjr_freeContext(&parts_->context);
   mjv_freeScene(&parts_->drawn);
 }
@@ -74,6 +78,7 @@ SceneImage SceneView::Draw(const Rigid3& T_w_c, const PinholeView& view,
   mjvScene* drawn = &parts_->drawn;
   mjv_updateScene(model, data, &option, nullptr, &camera, mjCAT_ALL, drawn);
   for (mjvGLCamera& eye : drawn->camera) SetCamera(T_w_c, view, &eye);
+  parts_->gl.MakeCurrent();
   drawn->flags[mjRND_SHADOW] = options.has_shadows ? 1 : 0;
   drawn->flags[mjRND_REFLECTION] = 0;
   const mjrRect viewport{0, 0, width, height};

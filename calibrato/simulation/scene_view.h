@@ -8,6 +8,7 @@
 #include "calibrato/motion/panda.h"
 #include "calibrato/sensors/camera_model.h"
 #include "calibrato/simulation/arm_scene.h"
+#include "calibrato/simulation/headless_gl.h"
 
 namespace calibrato {
 
@@ -30,10 +31,11 @@ struct SceneViewOptions {
   bool has_shadows = false;
 };
 
-/// Draws the scene of the arm. @pre An OpenGL context is current (HeadlessGl).
+/// Draws the scene of the arm.
 class SceneView {
  public:
-  explicit SceneView(const ArmScene& scene);
+  /// @param gl  Lives longer than the view.
+  SceneView(const ArmScene& scene, const HeadlessGl& gl);
   ~SceneView();
   SceneView(const SceneView&) = delete;
   SceneView& operator=(const SceneView&) = delete;

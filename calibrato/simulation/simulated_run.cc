@@ -6,7 +6,6 @@
 #include "calibrato/base/input_error.h"
 #include "calibrato/recording/photo.h"
 #include "calibrato/simulation/arm_execution.h"
-#include "calibrato/simulation/rendered_camera.h"
 
 namespace calibrato {
 namespace {
@@ -26,8 +25,9 @@ Tracking Worst(const ArmExecution& execution) {
 
 }  // namespace
 
-SimulatedRun SimulateRun(const Rig& rig, const TimedMotion& motion, Fidelity fidelity, Time start,
-                         const Rng& rng) {
+SimulatedRun SimulateRun(
+    const Rig& rig, const TimedMotion& motion, Fidelity fidelity, Time start, const Rng& rng,
+    const std::function<void(const CarrierPath& path, const SimulatedImage& image)>& on_image) {
   const bool is_arm = motion.motion.carrier == Carrier::kArm;
   if (fidelity == Fidelity::kPhysical && !is_arm) {
     throw InputError({"fidelity physical is that of an arm", "",
@@ -46,6 +46,7 @@ SimulatedRun SimulateRun(const Rig& rig, const TimedMotion& motion, Fidelity fid
   if (fidelity == Fidelity::kRendered) {
     const auto keep = [&](const SimulatedImage& image) {
       run.images.push_back({image.stamp, EncodePng(image.image)});
+      if (on_image) on_image(run.path, image);
     };
     const int num_dropped =
         SimulateImages(rig, run.path, start, rng.Stream("simulate images"), keep);

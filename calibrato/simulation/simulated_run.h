@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "calibrato/simulation/fast_simulation.h"
 #include "calibrato/simulation/fidelity.h"
 #include "calibrato/simulation/imu_simulation.h"
+#include "calibrato/simulation/rendered_camera.h"
 
 namespace calibrato {
 
@@ -39,9 +41,11 @@ struct SimulatedRun {
 /// Corners, images, IMU samples and arm draw from streams of their own, so that one does not depend
 /// on the others: those of `rng` for "simulate", "simulate images", "simulate imu", "simulate arm".
 /// @param start  The camera's clock when the motion begins.
+/// @param on_image  Called with each image of fidelity `rendered` when it is taken; may be empty.
 /// @throws InputError: no dynamics without an arm; an arm that does not follow; nothing to render
 /// with (HeadlessGl).
-[[nodiscard]] SimulatedRun SimulateRun(const Rig& rig, const TimedMotion& motion, Fidelity fidelity,
-                                       Time start, const Rng& rng);
+[[nodiscard]] SimulatedRun SimulateRun(
+    const Rig& rig, const TimedMotion& motion, Fidelity fidelity, Time start, const Rng& rng,
+    const std::function<void(const CarrierPath& path, const SimulatedImage& image)>& on_image = {});
 
 }  // namespace calibrato
