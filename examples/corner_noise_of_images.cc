@@ -137,30 +137,32 @@ Measurement Measure(const Rig& rig, const RenderedCamera& camera, double blur_px
   return measurement;
 }
 
-// Maximum likelihood of sigma^2 = stddev^2 + (factor * blur)^2, over a grid that is refined.
+// Maximum likelihood of CornerNoise::Stddev, over a grid that is refined.
 CornerNoise Fitted(const std::vector<Measurement>& measurements) {
-  const auto cost = [&](double stddev, double factor) {
+  const auto cost = [&](const CornerNoise& noise) {
     double sum = 0.0;
     for (const Measurement& m : measurements) {
       if (!m.is_found) continue;
-      const double variance = stddev * stddev + std::pow(factor * m.blur_px, 2);
+      const double variance = std::pow(noise.Stddev(m.blur_px), 2);
       sum += m.num_coordinates * std::log(variance) + m.squares / variance;
     }
     return sum;
   };
-  CornerNoise best;
-  double stddev_step = 0.05;
-  double factor_step = 0.02;
-  for (int round = 0; round < 40; ++round, stddev_step *= 0.7, factor_step *= 0.7) {
-    CornerNoise centre = best;
-    for (int i = -3; i <= 3; ++i) {
-      for (int j = -3; j <= 3; ++j) {
-        const double stddev = std::max(1e-4, centre.stddev_px + i * stddev_step);
-        const double factor = std::max(0.0, centre.blur_factor + j * factor_step);
-        if (cost(stddev, factor) < cost(best.stddev_px, best.blur_factor)) {
-          best.stddev_px = stddev;
-          best.blur_factor = factor;
-        }
+  CornerNoise best{.stddev_px = 0.01, .blur_factor = 0.003, .blur_knee_px = 6.0};
+  double least = cost(best);
+  double step = 1.0;  // of the logarithms
+  constexpr int kNumRounds = 60;
+  for (int round = 0; round < kNumRounds; ++round, step *= 0.85) {
+    const CornerNoise centre = best;
+    for (int i = 0; i < 27; ++i) {
+      CornerNoise tried = centre;
+      tried.stddev_px *= std::exp(step * (i % 3 - 1));
+      tried.blur_factor *= std::exp(step * (i / 3 % 3 - 1));
+      tried.blur_knee_px *= std::exp(step * (i / 9 - 1));
+      const double c = cost(tried);
+      if (c < least) {
+        least = c;
+        best = tried;
       }
     }
   }
@@ -184,8 +186,7 @@ void PrintClasses(const char* name, const std::vector<double>& edges, const Corn
       ++num_found;
       measured += m.squares;
       n += m.num_coordinates;
-      predicted += m.num_coordinates *
-                   (std::pow(noise.stddev_px, 2) + std::pow(noise.blur_factor * m.blur_px, 2));
+      predicted += m.num_coordinates * std::pow(noise.Stddev(m.blur_px), 2);
     }
     std::fprintf(stderr,
                  "%s %.2f to %.2f: found %d of %d, measured %.4f px, predicted %.4f, ratio %.3f\n",
@@ -201,18 +202,21 @@ int Run(int num_images, uint64_t seed) {
   std::printf("distance_m,tilt_rad,blur_px,spacing_px,found,rms_px\n");
   for (int i = 0; i < num_images; ++i) {
     Rng rng = Rng(seed).Stream("image", static_cast<uint64_t>(i));
-    const double blur_px = i % 4 == 0 ? 0.0 : rng.Uniform(0.0, 20.0);
+    const double blur_px = i % 4 == 0 ? 0.0 : rng.Uniform(0.0, 14.0);
     const Measurement m = Measure(rig, camera, blur_px, rng);
     measurements.push_back(m);
     std::printf("%.4f,%.4f,%.4f,%.3f,%d,%.5f\n", m.distance_m, m.tilt, m.blur_px, m.spacing_px,
                 m.is_found ? 1 : 0, m.is_found ? std::sqrt(m.squares / m.num_coordinates) : 0.0);
   }
   const CornerNoise noise = Fitted(measurements);
-  std::fprintf(stderr, "stddev_px %.4f, blur_factor %.4f\n", noise.stddev_px, noise.blur_factor);
+  std::fprintf(stderr, "stddev_px %.5f, blur_factor %.5f, blur_knee_px %.3f\n", noise.stddev_px,
+               noise.blur_factor, noise.blur_knee_px);
   PrintClasses("blur [px]", {0.0, 0.01, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0, 16.0, 30.0}, noise,
                measurements, [](const Measurement& m) { return m.blur_px; });
   PrintClasses("smear", {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.5}, noise, measurements,
                [](const Measurement& m) { return m.blur_px / m.spacing_px; });
+  std::erase_if(measurements, [](const Measurement& m) { return m.blur_px > 6.0; });
+  std::fprintf(stderr, "of images with a blur of up to 6 px:\n");
   PrintClasses("tilt [rad]", {0.0, 0.25, 0.5, 0.75, 1.05}, noise, measurements,
                [](const Measurement& m) { return m.tilt; });
   PrintClasses("distance [m]", {0.7, 1.0, 1.3, 1.6, 1.9, 2.2}, noise, measurements,

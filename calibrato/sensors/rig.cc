@@ -1,5 +1,7 @@
 #include "calibrato/sensors/rig.h"
 
+#include <cmath>
+
 #include "calibrato/sensors/imu_file.h"
 
 namespace calibrato {
@@ -7,17 +9,23 @@ namespace {
 
 CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
   const std::vector<std::string> unknown =
-      value.UnknownKeys({"stddev_px", "blur_factor", "blur_at_half", "blur_slope"});
+      value.UnknownKeys({"stddev_px", "blur_factor", "blur_knee_px", "blur_at_half", "blur_slope"});
   if (warnings != nullptr) warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   CornerNoise noise;
   if (const Value* x = value.Find("stddev_px")) noise.stddev_px = x->AsNonNegative();
   if (const Value* x = value.Find("blur_factor")) noise.blur_factor = x->AsNonNegative();
+  if (const Value* x = value.Find("blur_knee_px")) noise.blur_knee_px = x->AsPositive();
   if (const Value* x = value.Find("blur_at_half")) noise.blur_at_half = x->AsPositive();
   if (const Value* x = value.Find("blur_slope")) noise.blur_slope = x->AsPositive();
   return noise;
 }
 
 }  // namespace
+
+double CornerNoise::Stddev(double blur_px) const {
+  return std::hypot(stddev_px,
+                    blur_factor * blur_px * std::sqrt(1.0 + std::pow(blur_px / blur_knee_px, 6)));
+}
 
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
@@ -79,6 +87,7 @@ Value ToValue(const Rig& rig) {
   Value noise = Value::Object();
   noise.Set("stddev_px", rig.corner_noise.stddev_px)
       .Set("blur_factor", rig.corner_noise.blur_factor)
+      .Set("blur_knee_px", rig.corner_noise.blur_knee_px)
       .Set("blur_at_half", rig.corner_noise.blur_at_half)
       .Set("blur_slope", rig.corner_noise.blur_slope);
   Value arm = Value::Object();

@@ -82,7 +82,7 @@ SimulatedFrames SimulateFrames(const Rig& rig, const CarrierPath& path, Time sta
     const double smear = *blur / CornerSpacing(*pixels, neighbours);
     const double detected = 1.0 / (1.0 + std::exp((smear - noise.blur_at_half) / noise.blur_slope));
     const bool found = rng.Uniform() < detected || rig.exposure_s == 0.0;
-    const double stddev = std::hypot(noise.stddev_px, noise.blur_factor * *blur);
+    const double stddev = noise.Stddev(*blur);
     for (double& coordinate : pixels->reshaped()) coordinate += stddev * rng.Normal();
     if (!found) {
       ++frames.num_lost_to_blur;
