@@ -396,8 +396,24 @@ TEST(Simulate, NamesTheLimitAndTheWayPointThatDoNotFit) {
 
 TEST(Simulate, NamesAFidelityThatIsNotThere) {
   const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--fidelity", "renderd"}),
+                {"renderd", "did you mean rendered?"});
+}
+
+TEST(Simulate, NamesTheArmWhereThereAreNoDynamics) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--fidelity", "physical"}),
+                {"physical", "--carrier arm", "--fidelity fast"});
+}
+
+TEST(Simulate, SaysWhatRenderingLacksAndDoesWithoutIt) {
+  const SimulationInput input;
+  setenv("MUJOCO_GL", "off", 1);
   ExpectRefused(input.scratch, With(input.Simulate(), {"--fidelity", "rendered"}),
-                {"rendered", "--fidelity fast"});
+                {"without a screen", "libosmesa6", "--fidelity fast"});
+  const Ended ended = RunProgram(With(input.Simulate(), {"--out", input.scratch.Path("out")}));
+  unsetenv("MUJOCO_GL");
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
 }
 
 TEST(Simulate, NamesAnUnknownCarrier) {

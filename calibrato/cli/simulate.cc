@@ -1,7 +1,10 @@
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <variant>
 
 #include "calibrato/base/files.h"
@@ -9,9 +12,10 @@
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
-#include "calibrato/simulation/fast_simulation.h"
-#include "calibrato/simulation/imu_simulation.h"
+#include "calibrato/recording/video_writer.h"
+#include "calibrato/simulation/outside_view.h"
 #include "calibrato/simulation/simulated_recording.h"
+#include "calibrato/simulation/simulated_run.h"
 
 namespace calibrato {
 namespace {
@@ -25,13 +29,56 @@ struct Options {
   std::string carrier;
   std::string fidelity = "fast";
   bool scale_to_fit = false;
+  bool video = false;
   std::string out;
 };
 
+// Outside view and camera's view side by side, a picture a frame.
+class MotionVideo {
+ public:
+  explicit MotionVideo(const Rig& rig) : outside_(rig) {
+    std::string name = (std::filesystem::temp_directory_path() / "calibrato-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw InputError({"cannot write the video", name, "no temporary folder can be made",
+                        "set TMPDIR to a folder that can be written"});
+    }
+    folder_ = name;
+  }
+  ~MotionVideo() {
+    file_.reset();
+    std::error_code ignored;
+    std::filesystem::remove_all(folder_, ignored);
+  }
+  MotionVideo(const MotionVideo&) = delete;
+  MotionVideo& operator=(const MotionVideo&) = delete;
+
+  void Add(const CarrierPath& path, const SimulatedImage& image) {
+    const RgbImage picture = SideBySide(outside_.Draw(path, image.t_s), image.image);
+    if (!file_) file_.emplace(Name(), picture.resolution, kCameraRateHz);
+    file_->Add(picture);
+  }
+
+  /// Ends the file. Returns its content.
+  std::string Finish() {
+    file_.reset();
+    constexpr size_t kMaxBytes = size_t{2} << 30;
+    return ReadFile(Name(), kMaxBytes);
+  }
+
+ private:
+  [[nodiscard]] std::string Name() const { return (folder_ / "video.avi").string(); }
+
+  OutsideView outside_;
+  std::filesystem::path folder_;
+  std::optional<VideoWriter> file_;
+};
+
 ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
-  if (options.fidelity != "fast") {
-    throw InputError({"--fidelity " + options.fidelity + " is not in this version", "", "",
-                      "use --fidelity fast"});
+  const Fidelity fidelity = FidelityFromName(options.fidelity);
+  if (options.video && fidelity != Fidelity::kRendered) {
+    throw InputError({"--video shows the camera's images", "",
+                      "fidelity " + FidelityName(fidelity) + " has none",
+                      "add --fidelity rendered"});
   }
   if (!global.force && std::filesystem::exists(options.out)) {
     throw InputError({"there is something at --out already", options.out,
@@ -52,36 +99,48 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
     planned = PlanScaledToFit(motion, rig);
   }
   const auto& timed = std::get<TimedMotion>(planned);
-  Rng noise = Rng(global.seed).Stream("simulate");
-  const SimulatedFrames frames = SimulateFrames(rig, timed, kSimulationStart, noise);
-  if (frames.views.empty()) {
+  std::optional<MotionVideo> video;
+  if (options.video) video.emplace(rig);
+  const auto film = [&](const CarrierPath& path, const SimulatedImage& image) {
+    if (video) video->Add(path, image);
+  };
+  const SimulatedRun run =
+      SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed), film);
+  const size_t num_views = run.images.empty() ? run.frames.views.size() : run.images.size();
+  if (num_views == 0) {
     throw InputError({"the camera never saw the whole board", options.motion,
-                      std::to_string(frames.num_frames) + " frames were taken",
+                      std::to_string(run.frames.num_frames) + " frames were taken",
                       "check T_w_g and T_e_c0 of the rig"});
   }
-  Rng imu_noise = Rng(global.seed).Stream("simulate imu");
-  const SimulatedImu imu = SimulateImu(rig, timed, kSimulationStart, imu_noise);
-  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, frames, imu)) {
+  for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, run)) {
     out.Add(name, content);
   }
+  if (video) out.Add("video.avi", video->Finish());
   out.Commit();
   Value summary = Value::Object();
   summary.Set("kind", "simulation")
       .Set("out", options.out)
-      .Set("num_frames", frames.num_frames)
-      .Set("num_views", frames.views.size())
-      .Set("num_out_of_image", frames.num_out_of_image)
-      .Set("num_lost_to_blur", frames.num_lost_to_blur)
-      .Set("num_imu_samples", imu.stream.gyro.size())
+      .Set("fidelity", FidelityName(fidelity))
+      .Set("num_frames", run.frames.num_frames)
+      .Set(run.images.empty() ? "num_views" : "num_images", num_views)
+      .Set("num_out_of_image", run.frames.num_out_of_image)
+      .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
+      .Set("num_imu_samples", run.imu.stream.gyro.size())
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
       .Set("path_length_m", PathLength(timed.motion));
+  if (run.tracking) {
+    summary.Set("max_position_error_m", run.tracking->max_position_error_m)
+        .Set("max_rotation_error_rad", run.tracking->max_rotation_error_rad)
+        .Set("max_torque_share", run.tracking->max_torque_share);
+  }
   if (global.json) {
     std::fputs(ToJson(summary).c_str(), stdout);
   } else if (!global.quiet) {
-    std::printf("%zu of %d frames show the whole board; %.2f s, path %.3f m, scale %.3f\n%s\n",
-                frames.views.size(), frames.num_frames, timed.duration_s(),
-                PathLength(timed.motion), timed.scale, options.out.c_str());
+    const char* what = run.images.empty() ? "show the whole board" : "were rendered";
+    std::printf("%zu of %d frames %s; %.2f s, path %.3f m, scale %.3f\n%s\n", num_views,
+                run.frames.num_frames, what, timed.duration_s(), PathLength(timed.motion),
+                timed.scale, options.out.c_str());
   }
   return kDone;
 }
@@ -93,9 +152,13 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
   app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
   app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
-  app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
+  app.add_option("--fidelity", options->fidelity,
+                 "fast, physical (the arm's dynamics) or rendered (images too)")
+      ->capture_default_str();
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");
+  app.add_flag("--video", options->video,
+               "Also video.avi: the arm from outside and the camera's view");
   app.add_option("--out", options->out, "Folder for the recording")->required();
   return [options, &global] { return RunSimulate(*options, global); };
 }

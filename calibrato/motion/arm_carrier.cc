@@ -7,7 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "calibrato/motion/arm_clearance.h"
 #include "calibrato/motion/board_in_view.h"
+#include "calibrato/motion/joint_motion.h"
 #include "calibrato/motion/joint_path_cost.h"
 #include "calibrato/motion/joint_path_refinement.h"
 #include "calibrato/motion/joint_path_search.h"
@@ -31,10 +33,10 @@ PosePath PosesAlong(const Motion& motion) {
 
 // The least of a function of pose and last joint, over a fine grid of the last joint.
 template <typename Function>
-double LeastOverLastJoint(const Rigid3& T_b_e, const Function& function) {
+double LeastOverLastJoint(const Rigid3& T_b_e, const JointRange& range, const Function& function) {
   constexpr int kGridSize = 400;
-  const double lower = Limits().lower[6];
-  const double upper = Limits().upper[6];
+  const double lower = range.lower[6];
+  const double upper = range.upper[6];
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kGridSize; ++i) {
     least = std::min(least, function(T_b_e, lower + (upper - lower) * i / kGridSize));
@@ -43,26 +45,27 @@ double LeastOverLastJoint(const Rigid3& T_b_e, const Function& function) {
 }
 
 // True if no joint angles at all reach the pose within the limits, whatever path leads there.
-bool LiesBeyondLimits(const Rigid3& T_b_e) {
-  const auto least_excess = [](const Rigid3& pose, double q7) {
+bool LiesBeyondLimits(const Rigid3& T_b_e, const JointRange& range) {
+  const auto least_excess = [&](const Rigid3& pose, double q7) {
     double least = std::numeric_limits<double>::infinity();
     for (const JointVector& q : PandaInverse(pose, q7))
-      least = std::min(least, JointLimitExcess(q));
+      least = std::min(least, JointLimitExcess(q, range));
     return least;
   };
   constexpr double kGridError = 1e-3;  // [rad]
-  return LeastOverLastJoint(T_b_e, least_excess) > kGridError;
+  return LeastOverLastJoint(T_b_e, range, least_excess) > kGridError;
 }
 
 Refusal OutOfReach(const Rigid3& T_b_e) {
   Refusal refusal;
   refusal.limit = "way beyond the reach of the arm";
-  refusal.value = LeastOverLastJoint(T_b_e, PandaShortfall);
+  refusal.value = LeastOverLastJoint(T_b_e, {}, PandaShortfall);
   refusal.unit = "m";
   return refusal;
 }
 
-std::optional<Refusal> CheckJoints(const JointPath& path, size_t loop, int way_point) {
+std::optional<Refusal> CheckJoints(const JointPath& path, const JointRange& range, size_t loop,
+                                   int way_point) {
   const JointVector& q = path.At(loop, way_point);
   const JointVector& before = path.At(loop, way_point - 1);
   Refusal refusal;
@@ -71,10 +74,10 @@ std::optional<Refusal> CheckJoints(const JointPath& path, size_t loop, int way_p
     const std::string joint = "joint " + std::to_string(i + 1);
     refusal.value = q[i];
     refusal.limit = joint + " lower limit";
-    refusal.bound = Limits().lower[i];
+    refusal.bound = range.lower[i];
     if (!(q[i] >= refusal.bound)) return refusal;
     refusal.limit = joint + " upper limit";
-    refusal.bound = Limits().upper[i];
+    refusal.bound = range.upper[i];
     if (!(q[i] <= refusal.bound)) return refusal;
     refusal.limit = joint + " step between way-points";
     refusal.value = std::abs(q[i] - before[i]);
@@ -107,25 +110,65 @@ std::optional<Refusal> CheckWayPoints(size_t num_loops, const Check& check) {
   return first;
 }
 
-bool FitsLimits(const JointPath& path) {
-  const auto fits = [](const JointVector& q) { return JointLimitExcess(q) <= 0.0; };
+bool FitsLimits(const JointPath& path, const JointRange& range) {
+  const auto fits = [&](const JointVector& q) { return JointLimitExcess(q, range) <= 0.0; };
   return fits(path.start) && std::ranges::all_of(path.loops, [&](const JointPath::Loop& loop) {
            return std::ranges::all_of(loop, fits);
          });
 }
 
 // Walls before the joint limits, each nearer and steeper than the one before it.
-constexpr std::array<JointPathCost, 3> kPathCosts = {{{.margin = 0.1, .weight = 100.0},
-                                                      {.margin = 0.02, .weight = 1e4},
-                                                      {.margin = 0.002, .weight = 1e6}}};
+using JointPathCosts = std::array<JointPathCost, 3>;
+JointPathCosts PathCosts(const JointRange& range) {
+  return {{{.margin = 0.1, .weight = 100.0, .range = range},
+           {.margin = 0.02, .weight = 1e4, .range = range},
+           {.margin = 0.002, .weight = 1e6, .range = range}}};
+}
+
+JointRange RangeOf(const ArmLimits& limits) {
+  return {.lower = Limits().lower.cwiseMax(limits.joint_lower),
+          .upper = Limits().upper.cwiseMin(limits.joint_upper)};
+}
 
 // With one wall after the other, from `first_cost` on, until the path fits.
-JointPath Refined(const PosePath& poses, JointPath path, size_t first_cost) {
-  for (size_t i = first_cost; i < kPathCosts.size(); ++i) {
-    path = RefineJointPath(poses, path, kPathCosts[i]);
-    if (FitsLimits(path)) break;
+JointPath Refined(const PosePath& poses, JointPath path, const JointPathCosts& costs,
+                  size_t first_cost) {
+  for (size_t i = first_cost; i < costs.size(); ++i) {
+    path = RefineJointPath(poses, path, costs[i]);
+    if (FitsLimits(path, costs[i].range)) break;
   }
   return path;
+}
+
+// How far the last joint turns from its start.
+std::optional<Refusal> CheckWristTurn(const JointPath& path, const ArmLimits& limits, size_t loop,
+                                      int way_point) {
+  Refusal refusal;
+  refusal.limit = "turn of the wrist";
+  refusal.unit = "rad";
+  refusal.value = std::abs(path.At(loop, way_point)[6] - path.start[6]);
+  refusal.bound = limits.max_wrist_turn;
+  if (refusal.value <= refusal.bound) return std::nullopt;
+  return refusal;
+}
+
+// On the way to a way-point, itself included.
+std::optional<Refusal> CheckClearance(const LoopJointSpline& spline, const ClearanceCheck& check,
+                                      double clearance_m, int way_point) {
+  constexpr int kNumInstants = 4;
+  Refusal refusal;
+  refusal.unit = "m";
+  refusal.bound = clearance_m;
+  for (int k = 1; k <= kNumInstants; ++k) {
+    const double share = static_cast<double>(k) / kNumInstants;
+    const double theta = WayPointPhase(way_point - 1) + share * WayPointPhase(1);
+    const Phase phase{.theta = theta, .first = 0.0, .second = 0.0, .third = 0.0};
+    const Clearance clearance = check.Least(spline.At(phase).position);
+    refusal.limit = "clearance of " + clearance.what;
+    refusal.value = clearance.distance_m;
+    if (!(clearance.distance_m >= clearance_m)) return refusal;
+  }
+  return std::nullopt;
 }
 
 TimedMotion Timed(const Motion& motion, const JointPath& path) {
@@ -143,12 +186,28 @@ TimedMotion Timed(const Motion& motion, const JointPath& path) {
 // do not.
 class Selection {
  public:
-  Selection(const Motion& motion, const PosePath& poses) : motion_(motion), poses_(poses) {}
+  Selection(const Motion& motion, const PosePath& poses, const Rig& rig)
+      : motion_(motion),
+        poses_(poses),
+        limits_(rig.arm_limits),
+        range_(RangeOf(rig.arm_limits)),
+        costs_(PathCosts(range_)),
+        clearance_(rig) {}
 
   void Try(const JointPath& candidate, size_t first_cost) {
-    JointPath path = Refined(poses_, candidate, first_cost);
-    const auto check = [&](size_t loop, int i) { return CheckJoints(path, loop, i); };
-    std::optional<Refusal> refusal = CheckWayPoints(motion_.loops.size(), check);
+    JointPath path = Refined(poses_, candidate, costs_, first_cost);
+    const size_t num_loops = motion_.loops.size();
+    std::optional<Refusal> refusal = CheckWayPoints(
+        num_loops, [&](size_t loop, int i) { return CheckJoints(path, range_, loop, i); });
+    if (!refusal) {
+      // Only of a path that the joints can go.
+      std::vector<LoopJointSpline> splines;
+      for (size_t loop = 0; loop < num_loops; ++loop) splines.emplace_back(path, loop);
+      refusal = CheckWayPoints(num_loops, [&](size_t loop, int i) {
+        std::optional<Refusal> turn = CheckWristTurn(path, limits_, loop, i);
+        return turn ? turn : CheckClearance(splines[loop], clearance_, limits_.clearance_m, i);
+      });
+    }
     if (!refusal) {
       TimedMotion timed = Timed(motion_, path);
       if (!quickest_ || timed.duration_s() < quickest_->duration_s()) quickest_ = std::move(timed);
@@ -164,8 +223,8 @@ class Selection {
   // For the way-points alone that would be bad on any path. @pre no candidate fits
   std::optional<Refusal> BadOnAnyPath() const {
     return CheckWayPoints(motion_.loops.size(), [&](size_t loop, int i) {
-      std::optional<Refusal> refusal = CheckJoints(fewest_bad_path_, loop, i);
-      if (refusal && !LiesBeyondLimits(poses_.At(loop, i))) refusal.reset();
+      std::optional<Refusal> refusal = CheckJoints(fewest_bad_path_, range_, loop, i);
+      if (refusal && !LiesBeyondLimits(poses_.At(loop, i), range_)) refusal.reset();
       return refusal;
     });
   }
@@ -173,6 +232,10 @@ class Selection {
  private:
   const Motion& motion_;
   const PosePath& poses_;
+  const ArmLimits& limits_;
+  JointRange range_;
+  JointPathCosts costs_;
+  ClearanceCheck clearance_;
   std::optional<TimedMotion> quickest_;
   std::optional<Refusal> fewest_bad_;
   JointPath fewest_bad_path_;
@@ -183,7 +246,8 @@ class Selection {
 std::variant<TimedMotion, Refusal> PlanOnArm(const Motion& motion, const Rig& rig) {
   const PosePath poses = PosesAlong(motion);
   const size_t num_loops = motion.loops.size();
-  const JointChoices choices = JointChoicesAlong(poses);
+  const JointRange range = RangeOf(rig.arm_limits);
+  const JointChoices choices = JointChoicesAlong(poses, range);
   const auto check_pose = [&](size_t loop, int way_point) -> std::optional<Refusal> {
     const Rigid3& T_b_e = poses.At(loop, way_point);
     if (choices.At(loop, way_point).empty()) return OutOfReach(T_b_e);
@@ -191,10 +255,10 @@ std::variant<TimedMotion, Refusal> PlanOnArm(const Motion& motion, const Rig& ri
   };
   if (std::optional<Refusal> refusal = CheckWayPoints(num_loops, check_pose)) return *refusal;
 
-  Selection selection(motion, poses);
+  Selection selection(motion, poses, rig);
   const auto try_paths = [&](const JointChoices& from, size_t first_cost) {
     std::variant<std::vector<JointPath>, Refusal> search =
-        SearchJointPaths(from, kPathCosts[first_cost]);
+        SearchJointPaths(from, PathCosts(range)[first_cost]);
     if (auto* refusal = std::get_if<Refusal>(&search)) {
       refusal->num_way_points = kNumWayPoints * static_cast<int>(num_loops);
       return std::optional(*std::move(refusal));
@@ -208,7 +272,7 @@ std::variant<TimedMotion, Refusal> PlanOnArm(const Motion& motion, const Rig& ri
   if (selection.quickest()) return *selection.quickest();
   if (const std::optional<Refusal> refusal = selection.BadOnAnyPath()) return *refusal;
   // Every way-point alone can be reached. A soft wall on a coarse grid may have led astray.
-  (void)try_paths(FinerWhereTight(poses, choices), 1);
+  (void)try_paths(FinerWhereTight(poses, choices, range), 1);
   if (selection.quickest()) return *selection.quickest();
   return selection.fewest_bad();
 }

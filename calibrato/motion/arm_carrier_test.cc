@@ -133,6 +133,65 @@ TEST(ArmCarrier, RefusesToLoseTheBoard) {
   EXPECT_EQ(std::get<Refusal>(plan).limit, "board in view");
 }
 
+void ExpectRefusal(const Motion& motion, const Rig& rig, const std::string& limit) {
+  const auto plan = PlanMotion(motion, rig);
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  const Refusal& refusal = std::get<Refusal>(plan);
+  EXPECT_NE(refusal.limit.find(limit), std::string::npos) << refusal.Describe();
+}
+
+TEST(ArmCarrier, RefusesToRunIntoTheTable) {
+  Motion motion = OneLoop(15, 0.01);
+  motion.base_pose.xyz_m.z() = 0.03;
+  motion.base_pose.rpy_rad = {1.5708, 0.8, 1.5708};
+  Rig rig = PaperRig();
+  rig.T_w_g.t.z() -= 0.44;
+  ExpectRefusal(motion, rig, "to table");
+}
+
+TEST(ArmCarrier, RefusesToRunIntoTheBoard) {
+  Rig rig = PaperRig();
+  // 80 mm before the camera.
+  const Rigid3 T_w_c0 =
+      ArmBaseInWorld() * LoopPoseAt(BasePose(), LoopCoefficients::Zero(), 0.0) * rig.T_e_c0;
+  rig.T_w_g.t += T_w_c0 * Eigen::Vector3d(0.0, 0.0, 0.08) - rig.T_w_g * BoardCentre(rig.board);
+  ExpectRefusal(OneLoop(2, -0.03), rig, "to board");
+}
+
+TEST(ArmCarrier, RefusesToEnterABoxAndPassesBesideIt) {
+  const Motion motion = OnArm(HandcraftedMotion(Task::kExtrinsic));
+  Rig rig = PaperRig();
+  rig.arm_limits.keep_out = {
+      {"lamp", {Eigen::Matrix3d::Identity(), {0.35, 0.25, 0.47}}, {0.05, 0.05, 0.05}}};
+  ExpectRefusal(motion, rig, "to lamp");
+  rig.arm_limits.keep_out[0].T_b_box.t.z() = 1.4;
+  EXPECT_TRUE(std::holds_alternative<TimedMotion>(PlanMotion(motion, rig)));
+}
+
+TEST(ArmCarrier, KeepsTheUsersJointLimits) {
+  const Motion motion = OnArm(HandcraftedMotion(Task::kExtrinsic));
+  const TimedMotion free = std::get<TimedMotion>(PlanMotion(motion, PaperRig()));
+  JointVector highest = free.joint_path[0].position;
+  for (const JointSample& sample : free.joint_path) highest = highest.cwiseMax(sample.position);
+  // Just below where the free plan goes: the redundancy gives way.
+  Rig rig = PaperRig();
+  rig.arm_limits.joint_upper[6] = highest[6] - 0.05;
+  const auto plan = PlanMotion(motion, rig);
+  ASSERT_TRUE(std::holds_alternative<TimedMotion>(plan)) << std::get<Refusal>(plan).Describe();
+  for (const JointSample& sample : std::get<TimedMotion>(plan).joint_path) {
+    EXPECT_LE(sample.position[6], rig.arm_limits.joint_upper[6]);
+  }
+  // An elbow that can't bend enough: the pose decides its angle, nothing gives way.
+  rig.arm_limits.joint_lower[3] = -1.0;
+  ExpectRefusal(motion, rig, "joint 4 lower limit");
+}
+
+TEST(ArmCarrier, KeepsTheWristFromTurningTooFar) {
+  Rig rig = PaperRig();
+  rig.arm_limits.max_wrist_turn = 0.01;
+  ExpectRefusal(OnArm(HandcraftedMotion(Task::kExtrinsic)), rig, "turn of the wrist");
+}
+
 TEST(ArmCarrier, RefusesNotANumber) {
   EXPECT_TRUE(std::holds_alternative<Refusal>(PlanMotion(OneLoop(0, std::nan("")), PaperRig())));
 }

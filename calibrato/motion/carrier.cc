@@ -11,6 +11,7 @@
 #include "calibrato/geometry/rpy.h"
 #include "calibrato/motion/arm_carrier.h"
 #include "calibrato/motion/free_carrier.h"
+#include "calibrato/motion/joint_motion.h"
 #include "calibrato/motion/loop_state.h"
 
 namespace calibrato {
@@ -42,6 +43,16 @@ CarrierState TimedMotion::At(double t_s) const {
   while (i + 1 < motion.loops.size() && t_s > loop_duration_s[i]) t_s -= loop_duration_s[i++];
   return LoopStateAt(motion.base_pose, motion.loops[i].coefficients,
                      QuinticPhaseAt(t_s, loop_duration_s[i]));
+}
+
+CarrierPath PlannedPath(const TimedMotion& motion) {
+  CarrierPath path{motion.duration_s(), [motion](double t_s) { return motion.At(t_s); }, {}};
+  if (!motion.joint_path.empty()) {
+    path.joints = [joints = JointTrajectory(motion)](double t_s) {
+      return joints.At(t_s).position;
+    };
+  }
+  return path;
 }
 
 std::string Refusal::Describe() const {

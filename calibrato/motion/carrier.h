@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -43,6 +44,15 @@ struct TimedMotion {
   /// @param t_s  In [0, duration_s()]; clamped outside.
   [[nodiscard]] CarrierState At(double t_s) const;
 };
+
+/// The way of the controlled frame through time, whoever says so: the plan, or the arm that
+/// executed it. Before and after it the carrier is at rest.
+struct CarrierPath {
+  double duration_s = 0.0;
+  std::function<CarrierState(double t_s)> at;
+  std::function<Eigen::Matrix<double, 7, 1>(double t_s)> joints;  ///< [rad]; empty without an arm.
+};
+[[nodiscard]] CarrierPath PlannedPath(const TimedMotion& motion);
 
 /// Why a carrier can't make a motion: the first limit broken, in the order of time. Never a partial
 /// motion.

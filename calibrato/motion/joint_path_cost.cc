@@ -4,11 +4,11 @@ namespace calibrato {
 namespace {
 
 // How far each joint has gone into its wall at either end; the two never meet.
-JointVector IntoLowerWall(const JointVector& q, double margin) {
-  return ((Limits().lower - q).array() + margin).max(0.0);
+JointVector IntoLowerWall(const JointVector& q, const JointRange& range, double margin) {
+  return ((range.lower - q).array() + margin).max(0.0);
 }
-JointVector IntoUpperWall(const JointVector& q, double margin) {
-  return ((q - Limits().upper).array() + margin).max(0.0);
+JointVector IntoUpperWall(const JointVector& q, const JointRange& range, double margin) {
+  return ((q - range.upper).array() + margin).max(0.0);
 }
 
 }  // namespace
@@ -24,20 +24,17 @@ double JointPathCost::Step(const JointVector& step) {
 
 double JointPathCost::Wall(const JointVector& q) const {
   return 0.5 * weight *
-         (IntoLowerWall(q, margin).squaredNorm() + IntoUpperWall(q, margin).squaredNorm());
+         (IntoLowerWall(q, range, margin).squaredNorm() +
+          IntoUpperWall(q, range, margin).squaredNorm());
 }
 
 JointVector JointPathCost::WallGradient(const JointVector& q) const {
-  return weight * (IntoUpperWall(q, margin) - IntoLowerWall(q, margin));
+  return weight * (IntoUpperWall(q, range, margin) - IntoLowerWall(q, range, margin));
 }
 
 JointVector JointPathCost::WallCurvature(const JointVector& q) const {
-  const JointVector into = IntoUpperWall(q, margin) + IntoLowerWall(q, margin);
+  const JointVector into = IntoUpperWall(q, range, margin) + IntoLowerWall(q, range, margin);
   return weight * (into.array() > 0.0).cast<double>();
-}
-
-double JointLimitExcess(const JointVector& q) {
-  return (Limits().lower - q).cwiseMax(q - Limits().upper).maxCoeff();
 }
 
 }  // namespace calibrato

@@ -11,6 +11,7 @@ namespace calibrato {
 struct JointPathCost {
   double margin = 0.1;    ///< [rad]
   double weight = 100.0;  ///< [1/rad^2]
+  JointRange range = {};  ///< Whose ends are the limits.
 
   [[nodiscard]] static const JointVector& StepWeights();
   [[nodiscard]] static double Step(const JointVector& step);
@@ -19,8 +20,5 @@ struct JointPathCost {
   /// The diagonal of the wall's second derivative.
   [[nodiscard]] JointVector WallCurvature(const JointVector& q) const;
 };
-
-/// How far the worst joint lies beyond its limit; negative inside all limits [rad].
-[[nodiscard]] double JointLimitExcess(const JointVector& q);
 
 }  // namespace calibrato

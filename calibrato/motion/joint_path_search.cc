@@ -13,24 +13,25 @@ constexpr double kUnreached = std::numeric_limits<double>::infinity();
 
 constexpr int kGridSize = 36;
 
-double LeastExcess(const std::vector<JointVector>& choices) {
+double LeastExcess(const std::vector<JointVector>& choices, const JointRange& range) {
   double least = std::numeric_limits<double>::infinity();
-  for (const JointVector& q : choices) least = std::min(least, JointLimitExcess(q));
+  for (const JointVector& q : choices) least = std::min(least, JointLimitExcess(q, range));
   return least;
 }
 
-std::vector<JointVector> ChoicesAt(const Rigid3& T_b_e, int grid_size) {
+std::vector<JointVector> ChoicesAt(const Rigid3& T_b_e, int grid_size, const JointRange& range) {
   constexpr double kMaxExcess = 0.3;  // [rad]; what refinement may still mend
-  const double lower = Limits().lower[6];
-  const double upper = Limits().upper[6];
+  const double lower = range.lower[6];
+  const double upper = range.upper[6];
   std::vector<JointVector> choices;
   for (int i = 0; i < grid_size; ++i) {
     const double q7 = lower + (upper - lower) * (i + 0.5) / grid_size;
     const std::vector<JointVector> solutions = PandaInverse(T_b_e, q7);
     choices.insert(choices.end(), solutions.begin(), solutions.end());
   }
-  const double max_excess = std::max(kMaxExcess, LeastExcess(choices));
-  std::erase_if(choices, [&](const JointVector& q) { return JointLimitExcess(q) > max_excess; });
+  const double max_excess = std::max(kMaxExcess, LeastExcess(choices, range));
+  std::erase_if(choices,
+                [&](const JointVector& q) { return JointLimitExcess(q, range) > max_excess; });
   return choices;
 }
 
@@ -188,8 +189,8 @@ class Search {
 
 }  // namespace
 
-JointChoices JointChoicesAlong(const PosePath& poses) {
-  const auto choices_at = [](const Rigid3& T_b_e) { return ChoicesAt(T_b_e, kGridSize); };
+JointChoices JointChoicesAlong(const PosePath& poses, const JointRange& range) {
+  const auto choices_at = [&](const Rigid3& T_b_e) { return ChoicesAt(T_b_e, kGridSize, range); };
   JointChoices choices;
   choices.start = choices_at(poses.start);
   for (const PosePath::Loop& loop : poses.loops) {
@@ -198,10 +199,11 @@ JointChoices JointChoicesAlong(const PosePath& poses) {
   return choices;
 }
 
-JointChoices FinerWhereTight(const PosePath& poses, const JointChoices& choices) {
+JointChoices FinerWhereTight(const PosePath& poses, const JointChoices& choices,
+                             const JointRange& range) {
   constexpr double kTight = -0.1;  // [rad]
-  const auto finer = [](const Rigid3& T_b_e, const std::vector<JointVector>& coarse) {
-    return LeastExcess(coarse) > kTight ? ChoicesAt(T_b_e, 4 * kGridSize) : coarse;
+  const auto finer = [&](const Rigid3& T_b_e, const std::vector<JointVector>& coarse) {
+    return LeastExcess(coarse, range) > kTight ? ChoicesAt(T_b_e, 4 * kGridSize, range) : coarse;
   };
   JointChoices fine;
   fine.start = finer(poses.start, choices.start);

@@ -16,11 +16,12 @@ inline constexpr double kMaxJointStep = 0.5;
 using JointChoices = LoopedPath<std::vector<JointVector>>;
 /// Those far outside the limits are left out, unless there are no better. Empty where the pose is
 /// out of the arm's reach.
-[[nodiscard]] JointChoices JointChoicesAlong(const PosePath& poses);
+[[nodiscard]] JointChoices JointChoicesAlong(const PosePath& poses, const JointRange& range = {});
 
 /// The same with a grid four times as fine where no choice stays 0.1 rad within the limits: what
 /// fits there may stand between the coarse grid's lines.
-[[nodiscard]] JointChoices FinerWhereTight(const PosePath& poses, const JointChoices& choices);
+[[nodiscard]] JointChoices FinerWhereTight(const PosePath& poses, const JointChoices& choices,
+                                           const JointRange& range = {});
 
 /// Joint paths through the choices, all loops from one start: for each start the cheapest, by
 /// dynamic programming over whole loops.

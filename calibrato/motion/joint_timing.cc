@@ -1,44 +1,47 @@
 #include "calibrato/motion/joint_timing.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "calibrato/motion/joint_motion.h"
+#include "calibrato/motion/panda_dynamics.h"
 #include "calibrato/motion/time_law.h"
 
 namespace calibrato {
 namespace {
 
-// One row a way-point, 1 to 62.
-using LoopJoints = Eigen::Matrix<double, kNumWayPoints, 7>;
-constexpr double kSpacing = WayPointPhase(1);
-
-LoopJoints JointsOf(const JointPath& path, size_t loop) {
-  LoopJoints joints;
-  for (int i = 1; i <= kNumWayPoints; ++i) joints.row(i - 1) = path.At(loop, i).transpose();
-  return joints;
+// The largest speed x <= 1 such that holding + friction x + inertial x^2 stays within +-limit at
+// all speeds up to x. Slower by x, friction falls as x and what accelerations take as x^2.
+double FastestWithin(double holding, double friction, double inertial, double limit) {
+  if (!(std::abs(holding) < limit)) return 0.0;
+  double fastest = 1.0;
+  for (const double bound : {-limit, limit}) {
+    // a x^2 + b x + c = 0, by the formula that does not cancel.
+    const double a = inertial;
+    const double b = friction;
+    const double c = holding - bound;
+    const double discriminant = b * b - 4.0 * a * c;
+    if (discriminant < 0.0) continue;
+    const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+    for (const double root : {q / a, c / q}) {
+      if (root > 0.0) fastest = std::min(fastest, root);
+    }
+  }
+  return fastest;
 }
 
-// The periodic cubic spline's second derivatives at its knots: M_i-1 + 4 M_i + M_i+1 =
-// 6 / h^2 (q_i-1 - 2 q_i + q_i+1).
-LoopJoints SplineSecondDerivatives(const LoopJoints& joints) {
-  using Matrix = Eigen::Matrix<double, kNumWayPoints, kNumWayPoints>;
-  static const Matrix inverse = [] {
-    Matrix system = Matrix::Zero();
-    for (int i = 0; i < kNumWayPoints; ++i) {
-      system(i, i) = 4.0;
-      system(i, (i + 1) % kNumWayPoints) = 1.0;
-      system((i + 1) % kNumWayPoints, i) = 1.0;
-    }
-    return Matrix(system.llt().solve(Matrix::Identity()));
-  }();
-  LoopJoints right;
-  for (int i = 0; i < kNumWayPoints; ++i) {
-    right.row(i) = joints.row((i + kNumWayPoints - 1) % kNumWayPoints) - 2.0 * joints.row(i) +
-                   joints.row((i + 1) % kNumWayPoints);
+double StretchByTorque(const JointMotion& joints, const JointVector& limits) {
+  const JointVector still = JointVector::Zero();
+  const JointVector holding = PandaTorque(joints.position, still, still);
+  const JointVector friction = kViscousFriction * joints.velocity;
+  const JointVector inertial =
+      PandaTorque(joints.position, joints.velocity, joints.acceleration) - holding - friction;
+  double fastest = 1.0;
+  for (int i = 0; i < limits.size(); ++i) {
+    fastest = std::min(fastest, FastestWithin(holding[i], friction[i], inertial[i], limits[i]));
   }
-  return inverse * (6.0 / (kSpacing * kSpacing) * right);
+  return 1.0 / fastest;
 }
 
 // The times of way-points 1 to 62 as shares of the loop's duration.
@@ -60,32 +63,21 @@ std::array<double, kNumWayPoints> WayPointTimes() {
 
 }  // namespace
 
-double SmallestStretch(const JointPath& path, size_t loop, double duration_s) {
+double SmallestStretch(const JointPath& path, size_t loop, double duration_s,
+                       const PandaLimits& limits) {
   constexpr int kNumInstants = 500;
-  const LoopJoints joints = JointsOf(path, loop);
-  const LoopJoints second = SplineSecondDerivatives(joints);
+  const LoopJointSpline spline(path, loop);
+  const auto largest_ratio = [](const JointVector& values, const JointVector& bounds) {
+    return values.cwiseAbs().cwiseQuotient(bounds).maxCoeff();
+  };
   double stretch = 1.0;
   for (int k = 0; k <= kNumInstants; ++k) {
-    const Phase phase = QuinticPhaseAt(duration_s * k / kNumInstants, duration_s);
-    const double position = phase.theta / kSpacing;
-    const int segment = std::clamp(static_cast<int>(position), 0, kNumWayPoints - 1);
-    const int from = (segment + kNumWayPoints - 1) % kNumWayPoints;
-    const int to = segment;  // row i - 1 is way-point i, and segment i ends at way-point i + 1
-    const double u = position - segment;
-    const JointVector by_theta = (joints.row(to) - joints.row(from)).transpose() / kSpacing +
-                                 kSpacing / 6.0 *
-                                     ((3.0 * u * u - 1.0) * second.row(to) -
-                                      (3.0 * (1.0 - u) * (1.0 - u) - 1.0) * second.row(from))
-                                         .transpose();
-    const JointVector by_theta_twice =
-        ((1.0 - u) * second.row(from) + u * second.row(to)).transpose();
-    const JointVector velocity = by_theta * phase.first;
-    const JointVector acceleration =
-        by_theta_twice * (phase.first * phase.first) + by_theta * phase.second;
-    // Stretched by c, velocities fall as 1 / c and accelerations as 1 / c^2.
-    stretch = std::max(
-        {stretch, velocity.cwiseAbs().cwiseQuotient(Limits().velocity).maxCoeff(),
-         std::sqrt(acceleration.cwiseAbs().cwiseQuotient(Limits().acceleration).maxCoeff())});
+    const JointMotion joints = spline.At(QuinticPhaseAt(duration_s * k / kNumInstants, duration_s));
+    // Stretched by c, velocities fall as 1 / c, accelerations as 1 / c^2, jerks as 1 / c^3.
+    stretch = std::max({stretch, largest_ratio(joints.velocity, limits.velocity),
+                        std::sqrt(largest_ratio(joints.acceleration, limits.acceleration)),
+                        std::cbrt(largest_ratio(joints.jerk, limits.jerk)),
+                        StretchByTorque(joints, limits.torque)});
   }
   return stretch;
 }

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "calibrato/motion/joint_motion.h"
+#include "calibrato/motion/panda_dynamics.h"
 #include "calibrato/motion/time_law.h"
 
 namespace calibrato {
@@ -43,6 +46,37 @@ TEST(SmallestStretch, MeetsTheLimitsOfAKnownPathExactly) {
     EXPECT_GT(expected, 1.0);
     EXPECT_NEAR(SmallestStretch(SinePath(joint, amplitude), 0, 2.0), expected, 2e-3 * expected);
   }
+}
+
+// Of a path that swings joint `joint` by `amplitude`, with one limit lowered to what the motion
+// needs at `slower` times its duration: limits hold at that stretch and no earlier.
+TEST(SmallestStretch, IsOneWhereALimitIsJustMetAndMoreBeyondIt) {
+  const JointPath path = SinePath(1, 0.3);
+  const LoopJointSpline spline(path, 0);
+  const double duration_s = 5.0;
+  ASSERT_EQ(SmallestStretch(path, 0, duration_s), 1.0);
+  const double stretch = 1.3;
+  PandaLimits jerk = Limits();
+  PandaLimits torque = Limits();
+  jerk.jerk[1] = torque.torque[1] = 0.0;
+  for (int k = 0; k <= 500; ++k) {
+    const JointMotion joints =
+        spline.At(QuinticPhaseAt(stretch * duration_s * k / 500.0, stretch * duration_s));
+    jerk.jerk[1] = std::max(jerk.jerk[1], std::abs(joints.jerk[1]));
+    torque.torque[1] =
+        std::max(torque.torque[1],
+                 std::abs(PandaTorque(joints.position, joints.velocity, joints.acceleration)[1]));
+  }
+  EXPECT_NEAR(SmallestStretch(path, 0, duration_s, jerk), stretch, 1e-9);
+  EXPECT_NEAR(SmallestStretch(path, 0, duration_s, torque), stretch, 1e-9);
+  EXPECT_NEAR(SmallestStretch(path, 0, stretch * duration_s, torque), 1.0, 1e-9);
+}
+
+TEST(SmallestStretch, IsInfiniteWhereTheArmCannotHoldItself) {
+  PandaLimits weak = Limits();
+  weak.torque[1] = 0.0;
+  EXPECT_EQ(SmallestStretch(SinePath(1, 0.3), 0, 5.0, weak),
+            std::numeric_limits<double>::infinity());
 }
 
 TEST(TimedJointPath, PassesEachWayPointAtItsPhase) {

@@ -48,7 +48,14 @@ KDL::Chain MakeChain() {
   return chain;
 }
 
-Eigen::Vector3d ToEigen(const KDL::Vector& v) { return {v.x(), v.y(), v.z()}; }
+Rigid3 ToRigid3(const KDL::Frame& frame) {
+  Rigid3 T;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) T.R(row, column) = frame.M(row, column);
+    T.t[row] = frame.p[row];
+  }
+  return T;
+}
 
 // The angle that differs from `angle` by whole turns and lies within pi of the middle of its
 // joint's limits.
@@ -112,32 +119,39 @@ const PandaLimits& Limits() {
     l.upper << 2.8973, 1.7628, 2.8973, -0.0698, 2.8973, 3.7525, 2.8973;
     l.velocity << 2.175, 2.175, 2.175, 2.175, 2.61, 2.61, 2.61;
     l.acceleration << 3.75, 1.875, 2.5, 3.125, 3.75, 5.0, 5.0;
+    l.jerk << 7500.0, 3750.0, 5000.0, 6250.0, 7500.0, 10000.0, 10000.0;
+    l.torque << 87.0, 87.0, 87.0, 87.0, 12.0, 12.0, 12.0;
     return l;
   }();
   return limits;
 }
 
-Rigid3 PandaPose(const JointVector& q, JointJacobian* J_pose_q) {
+double JointLimitExcess(const JointVector& q, const JointRange& range) {
+  return (range.lower - q).cwiseMax(q - range.upper).maxCoeff();
+}
+
+PandaAxes AxesOf(const JointVector& q) {
   static const KDL::Chain chain = MakeChain();
+  PandaAxes axes;
   KDL::Frame tip = chain.getSegment(0).pose(0.0);
-  std::array<KDL::Vector, kNumJoints> axis;
-  std::array<KDL::Vector, kNumJoints> origin;
   for (int i = 0; i < kNumJoints; ++i) {
-    axis[i] = tip.M.UnitZ();
-    origin[i] = tip.p;
+    axes.T_b_link[i] = ToRigid3(KDL::Frame(tip.M * KDL::Rotation::RotZ(q[i]), tip.p));
     tip = tip * chain.getSegment(i + 1).pose(q[i]);
   }
+  axes.T_b_e = ToRigid3(tip);
+  return axes;
+}
+
+Rigid3 PandaPose(const JointVector& q, JointJacobian* J_pose_q) {
+  const PandaAxes axes = AxesOf(q);
   if (J_pose_q != nullptr) {
     for (int i = 0; i < kNumJoints; ++i) {
-      J_pose_q->col(i) << ToEigen(axis[i]), ToEigen(axis[i] * (tip.p - origin[i]));
+      const Rigid3& link = axes.T_b_link[i];
+      const Eigen::Vector3d axis = link.R.col(2);
+      J_pose_q->col(i) << axis, axis.cross(axes.T_b_e.t - link.t);
     }
   }
-  Rigid3 T_b_e;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) T_b_e.R(row, column) = tip.M(row, column);
-  }
-  T_b_e.t = ToEigen(tip.p);
-  return T_b_e;
+  return axes.T_b_e;
 }
 
 std::vector<JointVector> PandaInverse(const Rigid3& T_b_e, double q7) {

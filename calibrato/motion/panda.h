@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -19,14 +20,32 @@ namespace calibrato {
 using JointVector = Eigen::Matrix<double, 7, 1>;    ///< [rad]
 using JointJacobian = Eigen::Matrix<double, 6, 7>;  ///< Rows: dtheta_b, dt_b as in Rigid3.
 
-/// As in the original's model of the arm.
+/// Positions and velocities are the data sheet's, and so are jerks and torques. Accelerations are
+/// those that the original plans with, a quarter of the data sheet's.
 struct PandaLimits {
   JointVector lower;         ///< [rad]
   JointVector upper;         ///< [rad]
   JointVector velocity;      ///< [rad/s]
   JointVector acceleration;  ///< [rad/s^2]
+  JointVector jerk;          ///< [rad/s^3]
+  JointVector torque;        ///< [N m]
 };
 [[nodiscard]] const PandaLimits& Limits();
+
+/// Where the joints may be: the arm's own limits, or narrower ones.
+struct JointRange {
+  JointVector lower = Limits().lower;
+  JointVector upper = Limits().upper;
+};
+/// How far the worst joint lies beyond its limit; negative inside all limits [rad].
+[[nodiscard]] double JointLimitExcess(const JointVector& q, const JointRange& range = {});
+
+/// Where the joints turn.
+struct PandaAxes {
+  std::array<Rigid3, 7> T_b_link;  ///< Of link k: z along the axis of joint k, turned by it.
+  Rigid3 T_b_e;
+};
+[[nodiscard]] PandaAxes AxesOf(const JointVector& q);
 
 /// T_b_e. @param J_pose_q  Of the pose's perturbation by the joint angles; may be null.
 [[nodiscard]] Rigid3 PandaPose(const JointVector& q, JointJacobian* J_pose_q);

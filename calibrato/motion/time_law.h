@@ -8,6 +8,7 @@ struct Phase {
   double theta;   ///< [rad]
   double first;   ///< d theta / dt [rad/s]
   double second;  ///< d2 theta / dt2 [rad/s^2]
+  double third;   ///< d3 theta / dt3 [rad/s^3]; jumps at both ends.
 };
 [[nodiscard]] Phase QuinticPhaseAt(double t_s, double duration_s);
 

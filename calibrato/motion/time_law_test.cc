@@ -38,6 +38,7 @@ TEST(QuinticPhase, DerivativesAgreeWithDifferences) {
     const Phase here = QuinticPhaseAt(t, 3.0);
     EXPECT_NEAR(here.first, (after.theta - before.theta) / (2.0 * step), 1e-8);
     EXPECT_NEAR(here.second, (after.first - before.first) / (2.0 * step), 1e-8);
+    EXPECT_NEAR(here.third, (after.second - before.second) / (2.0 * step), 1e-8);
   }
 }
 

@@ -71,12 +71,35 @@ GreyImage Grey(const EncodedImage& encoded, const std::string& encoding, const s
   return grey;
 }
 
+std::string Encoded(const cv::Mat& pixels) {
+  std::vector<uint8_t> bytes;
+  if (!cv::imencode(".png", pixels, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1})) {
+    throw InputError({"cannot write an image", "", "OpenCV cannot encode PNG",
+                      "install libopencv-imgcodecs with PNG"});
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace
 
 GreyImage ReadPhoto(const std::string& path) { return Grey(ReadEncodedImage(path), "", path); }
 
 GreyImage DecodePhoto(const EncodedFile& file, const std::string& where) {
   return Grey(ExamineEncodedImage(file.bytes, where), file.encoding, where);
+}
+
+std::string EncodePng(const GreyImage& image) {
+  // OpenCV's header has no room for "will not be changed".
+  return Encoded(cv::Mat(image.resolution.height, image.resolution.width, CV_8UC1,
+                         const_cast<uint8_t*>(image.pixels.data())));  // NOLINT
+}
+
+std::string EncodePng(const RgbImage& image) {
+  const cv::Mat rgb(image.resolution.height, image.resolution.width, CV_8UC3,
+                    const_cast<uint8_t*>(image.pixels.data()));  // NOLINT
+  cv::Mat bgr;
+  cv::cvtColor(rgb, bgr, cv::COLOR_RGB2BGR);
+  return Encoded(bgr);
 }
 
 }  // namespace calibrato

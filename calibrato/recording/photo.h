@@ -22,4 +22,8 @@ namespace calibrato {
 /// The same of a file's content; `where` stands in for its path.
 [[nodiscard]] GreyImage DecodePhoto(const EncodedFile& file, const std::string& where);
 
+/// The content of a PNG that reads back to the same pixels.
+[[nodiscard]] std::string EncodePng(const GreyImage& image);
+[[nodiscard]] std::string EncodePng(const RgbImage& image);
+
 }  // namespace calibrato

@@ -184,5 +184,16 @@ TEST_F(PhotoTest, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT(ErrorOf(""), HasSubstr("empty"));
 }
 
+TEST(EncodePng, ReadsBackBitByBit) {
+  GreyImage image{{kWidth, kHeight}, {}};
+  Rng rng(2);
+  for (int k = 0; k < kWidth * kHeight; ++k) {
+    image.pixels.push_back(static_cast<uint8_t>(rng.UniformIndex(256)));
+  }
+  const GreyImage again = DecodePhoto({EncodePng(image), ""}, "test");
+  EXPECT_EQ(again.resolution, image.resolution);
+  EXPECT_EQ(again.pixels, image.pixels);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -64,6 +64,11 @@ LensOutline::LensOutline(const Camera& camera, const Rigid3& T_c_g)
                 : Vector2d(kNan, kNan);
 }
 
+LensOutline::LensOutline(const Camera& camera, const std::function<Rigid3(double row)>& pose_of_row)
+    : LensOutline(camera, pose_of_row(0.5 * (camera.resolution.height - 1))) {
+  pose_of_row_ = pose_of_row;
+}
+
 Vector2d LensOutline::PixelOf(const Vector3d& p_c) const {
   const bool is_within = p_c.z() >= rim_cotangent_ * p_c.head<2>().norm();
   const Vector3d direction = is_within ? p_c : AtAngle(p_c, rim_angle_);
@@ -83,7 +88,16 @@ Vector2d LensOutline::PixelOf(const Vector3d& p_c) const {
 }
 
 Vector3d LensOutline::InCamera(const Vector2d& p_g) const {
-  return T_c_g_ * Vector3d(p_g.x(), p_g.y(), 0.0);
+  const Vector3d p(p_g.x(), p_g.y(), 0.0);
+  Vector3d p_c = T_c_g_ * p;
+  if (!pose_of_row_) return p_c;
+  // Each pass leaves as much of the error as a point moves, in rows, while one row is read.
+  constexpr int kNumPasses = 4;
+  const double height = camera_.resolution.height;
+  for (int i = 0; i < kNumPasses; ++i) {
+    p_c = pose_of_row_(std::clamp(PixelOf(p_c).y(), -height, 2.0 * height)) * p;
+  }
+  return p_c;
 }
 
 LensOutline::Sample LensOutline::At(const Curve& curve, double t) const {

@@ -25,6 +25,12 @@ class LensOutline {
   /// @pre The camera is on the board's front side.
   LensOutline(const Camera& camera, const Rigid3& T_c_g);
 
+  /// Through a rolling shutter: each row of the image sees the board at a pose of its own. A point
+  /// lies where the row that it falls on sees it.
+  /// @param pose_of_row  T_c_g at the instant of an image row [px], from -height to 2 * height; it
+  /// changes by much less than a row from one row to the next.
+  LensOutline(const Camera& camera, const std::function<Rigid3(double row)>& pose_of_row);
+
   /// Takes the ends of a side [px].
   using Sink = std::function<void(const Eigen::Vector2d& from, const Eigen::Vector2d& to)>;
   /// A straight side of an outline in the plane z = 0 of the board [m].
@@ -55,7 +61,8 @@ class LensOutline {
   Eigen::Vector2d PixelOf(const Eigen::Vector3d& p_c) const;
 
   const Camera& camera_;
-  Rigid3 T_c_g_;
+  Rigid3 T_c_g_;                               // at the image's middle row
+  std::function<Rigid3(double)> pose_of_row_;  // empty: the same for all
   double rim_angle_;  // [rad] off the optical axis; all that is in the image is within
   double rim_cotangent_;
   Eigen::Vector2d behind_;

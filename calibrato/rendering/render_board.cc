@@ -14,34 +14,52 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Sums the light of the scene over a raster of `fineness` cells a pixel and direction.
+// Sums light over a raster of `fineness` cells a pixel and direction.
 class SceneSum {
  public:
-  SceneSum(const Camera& camera, const Rigid3& T_c_g, int fineness)
-      : outline_(camera, T_c_g),
-        fineness_(fineness),
-        sum_({camera.resolution.width * fineness, camera.resolution.height * fineness}) {}
+  SceneSum(Resolution resolution, int fineness)
+      : fineness_(fineness), sum_({resolution.width * fineness, resolution.height * fineness}) {}
 
-  // Adds light [grey levels] where the corners wind anticlockwise around.
-  void AddPolygon(const BoardPattern::Outline& corners, double light) {
-    const LensOutline::Sink sink = SideSink(light);
-    for (size_t k = 0; k < corners.size(); ++k) {
-      outline_.AddLine(corners[k], corners[(k + 1) % corners.size()], sink);
+  // Adds light [grey levels] on the sheet, and more (or less) of it where there is ink.
+  void AddBoard(const LensOutline& outline, const BoardPattern& pattern, double sheet, double ink) {
+    double within_rim = AddSheet(outline, pattern, sheet);
+    for (const BoardPattern::Outline& corners : pattern.outlines) {
+      within_rim += AddPolygon(outline, corners, ink);
     }
-    within_rim_ += light * WindingNumber(corners, outline_.behind());
+    for (const BoardPattern::Disc& disc : pattern.discs) {
+      outline.AddCircle(disc.centre, disc.radius_m, SideSink(ink));
+      if ((outline.behind() - disc.centre).norm() < disc.radius_m) within_rim += ink;
+    }
+    AddRim(outline, within_rim);
   }
 
-  void AddDisc(const BoardPattern::Disc& disc, double light) {
-    outline_.AddCircle(disc.centre, disc.radius_m, SideSink(light));
-    if ((outline_.behind() - disc.centre).norm() < disc.radius_m) within_rim_ += light;
+  void AddSheetAlone(const LensOutline& outline, const BoardPattern& pattern, double light) {
+    AddRim(outline, AddSheet(outline, pattern, light));
   }
 
-  std::vector<float> Finish(double background) && {
-    if (within_rim_ != 0.0) outline_.AddRim(SideSink(within_rim_));
-    return std::move(sum_).Finish(background);
-  }
+  std::vector<float> Finish(double background) && { return std::move(sum_).Finish(background); }
 
  private:
+  // Where the corners wind anticlockwise around. @return What is missing within the rim.
+  double AddPolygon(const LensOutline& outline, const BoardPattern::Outline& corners,
+                    double light) {
+    const LensOutline::Sink sink = SideSink(light);
+    for (size_t k = 0; k < corners.size(); ++k) {
+      outline.AddLine(corners[k], corners[(k + 1) % corners.size()], sink);
+    }
+    return light * WindingNumber(corners, outline.behind());
+  }
+
+  double AddSheet(const LensOutline& outline, const BoardPattern& pattern, double light) {
+    const Vector2d low = pattern.sheet.min();
+    const Vector2d high = pattern.sheet.max();
+    return AddPolygon(outline, {low, {high.x(), low.y()}, high, {low.x(), high.y()}}, light);
+  }
+
+  void AddRim(const LensOutline& outline, double light) {
+    if (light != 0.0) outline.AddRim(SideSink(light));
+  }
+
   // From pixels, whose centres are whole numbers, to cells.
   LensOutline::Sink SideSink(double light) {
     return [this, light](const Vector2d& from, const Vector2d& to) {
@@ -65,11 +83,58 @@ class SceneSum {
     return turns;
   }
 
-  LensOutline outline_;
   int fineness_;
   CoverageSum sum_;
-  double within_rim_ = 0.0;
 };
+
+bool IsBeforeTheBoard(const Rigid3& T_c_g) { return T_c_g.Inverse().t.z() > 0.0; }
+
+// The mean over each pixel, blurred by the lens.
+std::vector<float> Pixels(std::vector<float> cells, Resolution resolution, int fineness,
+                          double blur_px) {
+  if (blur_px == 0.0) return cells;
+  return Blurred(cells, resolution, fineness, blur_px);
+}
+
+uint8_t Rounded(float level) {
+  return static_cast<uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
+}
+
+}  // namespace
+
+Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera, const Rigid3& T_c_g,
+                     const Scene& scene) {
+  assert(scene.blur_px >= 0.0);
+  const int fineness = CellsPerPixel(scene.blur_px);
+  SceneSum sum(camera.resolution, fineness);
+  if (IsBeforeTheBoard(T_c_g)) {
+    sum.AddBoard(LensOutline(camera, T_c_g), pattern, scene.white - scene.background,
+                 scene.black - scene.white);
+  }
+  Exposure exposure{camera.resolution, Pixels(std::move(sum).Finish(scene.background),
+                                              camera.resolution, fineness, scene.blur_px)};
+  ApplyLighting(scene, &exposure);
+  return exposure;
+}
+
+BoardLayer RenderBoardLayer(const BoardPattern& pattern, const Camera& camera,
+                            const std::vector<PoseOfRow>& instants, const Scene& scene) {
+  assert(!instants.empty() && scene.blur_px >= 0.0);
+  const int fineness = CellsPerPixel(scene.blur_px);
+  const double share = 1.0 / static_cast<double>(instants.size());
+  SceneSum light(camera.resolution, fineness);
+  SceneSum coverage(camera.resolution, fineness);
+  for (const PoseOfRow& pose_of_row : instants) {
+    if (!IsBeforeTheBoard(pose_of_row(0.5 * (camera.resolution.height - 1)))) continue;
+    const LensOutline outline(camera, pose_of_row);
+    light.AddBoard(outline, pattern, share * scene.white, share * (scene.black - scene.white));
+    coverage.AddSheetAlone(outline, pattern, share);
+  }
+  const auto pixels = [&](SceneSum sum) {
+    return Pixels(std::move(sum).Finish(0.0), camera.resolution, fineness, scene.blur_px);
+  };
+  return {{camera.resolution, pixels(std::move(light))}, pixels(std::move(coverage))};
+}
 
 void ApplyLighting(const Scene& scene, Exposure* exposure) {
   if (scene.lighting_gradient.isZero(0.0) && scene.vignetting == 0.0) return;
@@ -84,35 +149,6 @@ void ApplyLighting(const Scene& scene, Exposure* exposure) {
       *pixel++ *= static_cast<float>(std::max(factor, 0.0));
     }
   }
-}
-
-uint8_t Rounded(float level) {
-  return static_cast<uint8_t>(std::clamp(level, 0.0F, 255.0F) + 0.5F);
-}
-
-}  // namespace
-
-Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera, const Rigid3& T_c_g,
-                     const Scene& scene) {
-  assert(scene.blur_px >= 0.0);
-  const int fineness = CellsPerPixel(scene.blur_px);
-  SceneSum sum(camera, T_c_g, fineness);
-  const bool is_before_the_board = T_c_g.Inverse().t.z() > 0.0;
-  if (is_before_the_board) {
-    const Vector2d low = pattern.sheet.min();
-    const Vector2d high = pattern.sheet.max();
-    sum.AddPolygon({low, {high.x(), low.y()}, high, {low.x(), high.y()}},
-                   scene.white - scene.background);
-    const double ink = scene.black - scene.white;
-    for (const BoardPattern::Outline& outline : pattern.outlines) sum.AddPolygon(outline, ink);
-    for (const BoardPattern::Disc& disc : pattern.discs) sum.AddDisc(disc, ink);
-  }
-  Exposure exposure{camera.resolution, std::move(sum).Finish(scene.background)};
-  if (scene.blur_px > 0.0) {
-    exposure.pixels = Blurred(exposure.pixels, camera.resolution, fineness, scene.blur_px);
-  }
-  ApplyLighting(scene, &exposure);
-  return exposure;
 }
 
 GreyImage Digitised(const Exposure& exposure) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <vector>
 
 #include "calibrato/base/rng.h"
@@ -47,6 +48,28 @@ struct Exposure {
 /// @param T_c_g  Board to camera.
 [[nodiscard]] Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera,
                                    const Rigid3& T_c_g, const Scene& scene);
+
+/// A board without what surrounds it, to be laid over an image of the rest:
+///
+///     pixel = light + (1 - coverage) * (what is behind the board)
+struct BoardLayer {
+  Exposure light;               ///< Of the board [grey levels].
+  std::vector<float> coverage;  ///< How much of each pixel the sheet covers, 0 to 1.
+};
+
+/// The board's pose T_c_g by the image row that is exposed (LensOutline).
+using PoseOfRow = std::function<Rigid3(double row)>;
+
+/// The mean over several instants of one exposure, each as exact as RenderBoard's image.
+/// @param instants  At least one: poses evenly spread over the exposure, at the middles of its
+/// parts.
+/// @param scene  Its black, white and blur_px; light and background are the caller's to add.
+[[nodiscard]] BoardLayer RenderBoardLayer(const BoardPattern& pattern, const Camera& camera,
+                                          const std::vector<PoseOfRow>& instants,
+                                          const Scene& scene);
+
+/// Light that varies over the image, and the lens's loss of it: `scene`'s gradient and vignetting.
+void ApplyLighting(const Scene& scene, Exposure* exposure);
 
 /// A sensor's noise: variance = read_noise^2 + shot_noise * (grey level).
 struct SensorNoise {

@@ -323,5 +323,75 @@ TEST(AprilGridTag, IsTurnedAsOnRealBoards) {
   EXPECT_GT(num_compared, 40);
 }
 
+// A grey world behind a layer is the image that RenderBoard makes at once.
+TEST(RenderBoardLayer, OverGreyIsTheBoardBeforeGrey) {
+  const BoardPattern pattern = PatternOf(Checkerboard{6, 7, 0.06, 0.06});
+  for (const double blur_px : {0.0, 0.8}) {
+    for (const Camera& camera : {Ordinary(), Backward()}) {
+      Scene scene;
+      scene.blur_px = blur_px;
+      const Rigid3 T_c_g = Pose(camera, {350.0, 200.0}, 0.7, {0.3, -0.2, 0.5}, {0.15, 0.18, 0.0});
+      const Exposure whole = RenderBoard(pattern, camera, T_c_g, scene);
+      const BoardLayer layer =
+          RenderBoardLayer(pattern, camera, {[&](double) { return T_c_g; }}, scene);
+      double worst = 0.0;
+      for (size_t k = 0; k < whole.pixels.size(); ++k) {
+        const double pixel = layer.light.pixels[k] + (1.0 - layer.coverage[k]) * scene.background;
+        worst = std::max(worst, std::abs(pixel - whole.pixels[k]));
+      }
+      EXPECT_LT(worst, 0.01);
+    }
+  }
+}
+
+TEST(RenderBoardLayer, OfSeveralInstantsIsTheirMean) {
+  const BoardPattern pattern = PatternOf(Checkerboard{6, 7, 0.06, 0.06});
+  const Camera camera = Ordinary();
+  std::vector<PoseOfRow> instants;
+  std::vector<float> mean(640 * 480, 0.0F);
+  for (int i = 0; i < 4; ++i) {
+    const Rigid3 T_c_g =
+        Pose(camera, {300.0 + 2.0 * i, 200.0}, 0.7, {0.3, 0.01 * i, 0.5}, {0.15, 0.18, 0.0});
+    instants.emplace_back([T_c_g](double) { return T_c_g; });
+    const Exposure one = RenderBoard(pattern, camera, T_c_g, Scene());
+    for (size_t k = 0; k < mean.size(); ++k) mean[k] += 0.25F * one.pixels[k];
+  }
+  const BoardLayer layer = RenderBoardLayer(pattern, camera, instants, Scene());
+  double worst = 0.0;
+  for (size_t k = 0; k < mean.size(); ++k) {
+    const double pixel = layer.light.pixels[k] + (1.0 - layer.coverage[k]) * Scene().background;
+    worst = std::max(worst, std::abs(pixel - mean[k]));
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
+// Through a rolling shutter each row is that of the still image at the row's own pose.
+TEST(RenderBoardLayer, RollingShutterShowsEachRowAtItsOwnPose) {
+  const BoardPattern pattern = PatternOf(Checkerboard{6, 7, 0.06, 0.06});
+  const Camera camera = Ordinary();
+  const PoseOfRow pose_of_row = [&](double row) {
+    // 30 px to the right and 10 px down from the first row to the last, and a turn.
+    const double share = row / 480.0;
+    return Pose(camera, {300.0 + 30.0 * share, 220.0 + 10.0 * share}, 0.7, {0.3, 0.05 * share, 0.5},
+                {0.15, 0.18, 0.0});
+  };
+  const BoardLayer rolling = RenderBoardLayer(pattern, camera, {pose_of_row}, Scene());
+  for (const int row : {150, 200, 250, 300}) {
+    const Rigid3 T_c_g = pose_of_row(row);
+    const BoardLayer still =
+        RenderBoardLayer(pattern, camera, {[&](double) { return T_c_g; }}, Scene());
+    double worst = 0.0;
+    double contrast = 0.0;
+    for (int u = 0; u < 640; ++u) {
+      const size_t k = 640 * static_cast<size_t>(row) + u;
+      worst = std::max<double>(worst, std::abs(rolling.light.pixels[k] - still.light.pixels[k]));
+      contrast = std::max<double>(contrast, still.light.pixels[k]);
+    }
+    EXPECT_GT(contrast, 200.0);
+    // Within a row the shutter goes on: half a row's way, 0.03 px, of a contrast of 200.
+    EXPECT_LT(worst, 8.0) << row;
+  }
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -13,4 +13,10 @@ struct GreyImage {
   std::vector<uint8_t> pixels;  ///< width * height
 };
 
+/// A colour image: red, green, blue, of 8 bits each, row by row from the top left.
+struct RgbImage {
+  Resolution resolution;
+  std::vector<uint8_t> pixels;  ///< 3 * width * height
+};
+
 }  // namespace calibrato

@@ -1,5 +1,7 @@
 #include "calibrato/sensors/rig.h"
 
+#include <cmath>
+
 #include "calibrato/sensors/imu_file.h"
 
 namespace calibrato {
@@ -7,11 +9,12 @@ namespace {
 
 CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
   const std::vector<std::string> unknown =
-      value.UnknownKeys({"stddev_px", "blur_factor", "blur_at_half", "blur_slope"});
+      value.UnknownKeys({"stddev_px", "blur_factor", "blur_knee_px", "blur_at_half", "blur_slope"});
   if (warnings != nullptr) warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   CornerNoise noise;
   if (const Value* x = value.Find("stddev_px")) noise.stddev_px = x->AsNonNegative();
   if (const Value* x = value.Find("blur_factor")) noise.blur_factor = x->AsNonNegative();
+  if (const Value* x = value.Find("blur_knee_px")) noise.blur_knee_px = x->AsPositive();
   if (const Value* x = value.Find("blur_at_half")) noise.blur_at_half = x->AsPositive();
   if (const Value* x = value.Find("blur_slope")) noise.blur_slope = x->AsPositive();
   return noise;
@@ -19,10 +22,15 @@ CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* w
 
 }  // namespace
 
+double CornerNoise::Stddev(double blur_px) const {
+  return std::hypot(stddev_px,
+                    blur_factor * blur_px * std::sqrt(1.0 + std::pow(blur_px / blur_knee_px, 6)));
+}
+
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
-    const std::vector<std::string> unknown =
-        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise"});
+    const std::vector<std::string> unknown = value.UnknownKeys(
+        {"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise", "images", "arm"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   Rig rig;
@@ -52,6 +60,21 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (const Value* noise = value.Find("noise")) {
     rig.corner_noise = CornerNoiseFromValue(*noise, warnings);
   }
+  if (const Value* images = value.Find("images")) {
+    rig.image_disturbances = ImageDisturbancesFromValue(*images, warnings);
+  }
+  if (const Value* arm = value.Find("arm")) {
+    if (warnings != nullptr) {
+      const std::vector<std::string> unknown = arm->UnknownKeys({"limits", "disturbances"});
+      warnings->insert(warnings->end(), unknown.begin(), unknown.end());
+    }
+    if (const Value* limits = arm->Find("limits")) {
+      rig.arm_limits = ArmLimitsFromValue(*limits, warnings);
+    }
+    if (const Value* disturbances = arm->Find("disturbances")) {
+      rig.arm_disturbances = ArmDisturbancesFromValue(*disturbances, warnings);
+    }
+  }
   return rig;
 }
 
@@ -64,15 +87,20 @@ Value ToValue(const Rig& rig) {
   Value noise = Value::Object();
   noise.Set("stddev_px", rig.corner_noise.stddev_px)
       .Set("blur_factor", rig.corner_noise.blur_factor)
+      .Set("blur_knee_px", rig.corner_noise.blur_knee_px)
       .Set("blur_at_half", rig.corner_noise.blur_at_half)
       .Set("blur_slope", rig.corner_noise.blur_slope);
+  Value arm = Value::Object();
+  arm.Set("limits", ToValue(rig.arm_limits)).Set("disturbances", ToValue(rig.arm_disturbances));
   Value value = Value::Object();
   value.Set("cameras", ToValue(rig.cameras))
       .Set("imu", std::move(imu))
       .Set("board", std::move(board))
       .Set("T_e_c0", ToValue(rig.T_e_c0))
       .Set("exposure_s", rig.exposure_s)
-      .Set("noise", std::move(noise));
+      .Set("noise", std::move(noise))
+      .Set("images", ToValue(rig.image_disturbances))
+      .Set("arm", std::move(arm));
   return value;
 }
 

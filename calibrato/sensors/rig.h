@@ -1,32 +1,40 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "calibrato/base/time.h"
 #include "calibrato/base/value.h"
 #include "calibrato/geometry/rigid3.h"
+#include "calibrato/sensors/arm_disturbances.h"
+#include "calibrato/sensors/arm_limits.h"
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/camera_chain.h"
+#include "calibrato/sensors/image_disturbances.h"
 #include "calibrato/sensors/imu.h"
 #include "calibrato/sensors/imu_disturbances.h"
 
 namespace calibrato {
 
-/// How corners are measured at fidelity `fast`: white noise that grows with motion blur, and a
-/// detector that loses the board when blur smears it.
+/// How corners are measured at fidelities `fast` and `physical`: white noise that grows with motion
+/// blur, slowly at first and steeply beyond a knee, and a detector that loses the board when blur
+/// smears it. With L the blur length [px], the mean way of the corners during the exposure:
 ///
-///     sigma^2 = stddev_px^2 + (blur_factor * blur length)^2
-///     P(board detected) = 1 / (1 + exp((blur length / corner spacing - blur_at_half) /
-///     blur_slope))
+///     sigma^2 = stddev_px^2 + (blur_factor L)^2 (1 + (L / blur_knee_px)^6)
+///     P(board detected) = 1 / (1 + exp((L / corner spacing - blur_at_half) / blur_slope))
 ///
-/// The blur length [px] is the mean way of the corners during the exposure, the spacing that of
-/// neighbouring corners in the image.
+/// The spacing is that of neighbouring corners in the image. docs/simulation.md has the figures
+/// that fit rendered images.
 struct CornerNoise {
   double stddev_px = 0.1;     ///< Of each coordinate at rest; the paper's simulator has about 0.1.
   double blur_factor = 0.05;  ///< [-] [px of noise per px of blur]
+  double blur_knee_px = std::numeric_limits<double>::infinity();  ///< > 0; infinity: no knee.
   double blur_at_half = 0.5;  ///< [-] Blur at which every second board is lost.
   double blur_slope = 0.05;   ///< [-] > 0
+
+  /// sigma [px] at blur length L [px].
+  [[nodiscard]] double Stddev(double blur_px) const;
 };
 
 /// A camera-IMU rig on its carrier, with the board before it: the truth of a simulation.
@@ -37,10 +45,13 @@ struct Rig {
   Duration time_offset_i_c;  ///< t_i = t_c + time_offset_i_c
   ImuNoise imu_noise;
   ImuDisturbances imu_disturbances;
+  ArmLimits arm_limits;
+  ArmDisturbances arm_disturbances;
   Board board;
-  Rigid3 T_w_g;             ///< Where the board stands.
-  double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.
-  CornerNoise corner_noise;
+  Rigid3 T_w_g;                          ///< Where the board stands.
+  double exposure_s = 0.0;               ///< [s] >= 0; 0 means no motion blur.
+  CornerNoise corner_noise;              ///< Fidelity `fast` and `physical`.
+  ImageDisturbances image_disturbances;  ///< Fidelity `rendered`.
 };
 
 /// RIG.yaml (docs/formats.md section 3). @throws InputError with line and key. Unknown keys are

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/so3.h"
 
@@ -21,6 +23,13 @@ Rig MakeRig() {
   rig.T_w_g = {ExpSo3({1.0, 2.0, 0.5}), {-2.0, -0.5, 0.7}};
   rig.exposure_s = 0.005;
   rig.corner_noise.stddev_px = 0.2;
+  rig.corner_noise.blur_knee_px = 4.5;
+  rig.arm_limits.joint_upper = Eigen::Matrix<double, 7, 1>::Constant(2.5);
+  rig.arm_limits.max_wrist_turn = 1.5;
+  rig.arm_limits.keep_out = {{"lamp", {ExpSo3({0.0, 0.3, 0.0}), {0.5, 0.5, 0.5}}, {0.1, 0.2, 0.3}}};
+  rig.image_disturbances.line_delay_s = 3e-5;
+  rig.image_disturbances.lighting_gradient = {0.1, -0.2};
+  rig.arm_disturbances = {.mode_hz = 17.0, .mode_damping = 0.1, .torque_ripple = 0.3};
   return rig;
 }
 
@@ -34,6 +43,18 @@ TEST(Rig, RoundTrip) {
   EXPECT_EQ(rig.board, MakeRig().board);
   EXPECT_EQ(rig.corner_noise.stddev_px, 0.2);
   EXPECT_EQ(rig.exposure_s, 0.005);
+  EXPECT_EQ(rig.corner_noise.blur_knee_px, 4.5);
+  EXPECT_EQ(rig.arm_limits.joint_upper, MakeRig().arm_limits.joint_upper);
+  EXPECT_FALSE(rig.arm_limits.joint_lower.allFinite());
+  EXPECT_EQ(rig.arm_limits.max_wrist_turn, 1.5);
+  ASSERT_EQ(rig.arm_limits.keep_out.size(), 1u);
+  EXPECT_EQ(rig.arm_limits.keep_out[0].name, "lamp");
+  EXPECT_EQ(rig.arm_limits.keep_out[0].size_m, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(rig.image_disturbances.line_delay_s, 3e-5);
+  EXPECT_EQ(rig.image_disturbances.lighting_gradient, Eigen::Vector2d(0.1, -0.2));
+  EXPECT_EQ(rig.arm_disturbances.mode_hz, 17.0);
+  EXPECT_EQ(rig.arm_disturbances.mode_damping, 0.1);
+  EXPECT_EQ(rig.arm_disturbances.torque_ripple, 0.3);
 }
 
 TEST(Rig, WhatIsOptionalHasDefaults) {
@@ -43,6 +64,23 @@ TEST(Rig, WhatIsOptionalHasDefaults) {
   const Rig rig = RigFromValue(ParseYaml(text, "rig.yaml"), nullptr);
   EXPECT_EQ(rig.exposure_s, 0.0);
   EXPECT_EQ(rig.corner_noise.stddev_px, 0.1);
+}
+
+TEST(CornerNoise, GrowsSteeplyBeyondItsKnee) {
+  CornerNoise noise{.stddev_px = 0.03, .blur_factor = 0.01};
+  EXPECT_NEAR(noise.Stddev(4.0), 0.05, 1e-15);
+  noise.blur_knee_px = 4.0;
+  EXPECT_NEAR(noise.Stddev(4.0), std::hypot(0.03, 0.04 * std::sqrt(2.0)), 1e-15);
+  // Far beyond, sixteen times as much at twice the blur.
+  EXPECT_NEAR(noise.Stddev(80.0) / noise.Stddev(40.0), 16.0, 1e-3);
+  EXPECT_EQ(noise.Stddev(0.0), 0.03);
+}
+
+TEST(Rig, AnArmThatSwingsFasterThanItIsSimulatedIsAnError) {
+  std::string text = ToYaml(ToValue(MakeRig()));
+  const std::string value = "mode_hz: 17";
+  text.replace(text.find(value), value.size(), "mode_hz: 170");
+  EXPECT_THROW((void)RigFromValue(ParseYaml(text, "rig.yaml"), nullptr), InputError);
 }
 
 TEST(Rig, ANegativeDensityIsAnErrorWithLineAndKey) {

@@ -25,12 +25,12 @@ std::optional<Eigen::Matrix2Xd> VisibleCorners(const Camera& camera, const Rigid
 }
 
 // Mean way of the corners during the exposure [px]; nothing where one leaves the lens's domain.
-std::optional<double> BlurLength(const Rig& rig, const TimedMotion& motion, double t_s,
+std::optional<double> BlurLength(const Rig& rig, const CarrierPath& path, double t_s,
                                  const Eigen::Matrix3Xd& points_g) {
   if (rig.exposure_s == 0.0) return 0.0;
   const CameraModel& lens = rig.cameras.front().model;
-  const Rigid3 first = BoardInCamera(rig, motion.At(t_s - 0.5 * rig.exposure_s).T_b_e);
-  const Rigid3 last = BoardInCamera(rig, motion.At(t_s + 0.5 * rig.exposure_s).T_b_e);
+  const Rigid3 first = BoardInCamera(rig, path.at(t_s - 0.5 * rig.exposure_s).T_b_e);
+  const Rigid3 last = BoardInCamera(rig, path.at(t_s + 0.5 * rig.exposure_s).T_b_e);
   double sum = 0.0;
   for (Eigen::Index k = 0; k < points_g.cols(); ++k) {
     const auto a = lens.Project(first * points_g.col(k));
@@ -56,20 +56,24 @@ Rigid3 BoardInCamera(const Rig& rig, const Rigid3& T_b_e) {
 }
 
 SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time start, Rng& rng) {
+  return SimulateFrames(rig, PlannedPath(motion), start, rng);
+}
+
+SimulatedFrames SimulateFrames(const Rig& rig, const CarrierPath& path, Time start, Rng& rng) {
   const Camera& camera = rig.cameras.front();
   const Eigen::Matrix3Xd points_g = BoardPoints(rig.board);
   const std::vector<std::pair<int, int>> neighbours = NeighbouringPoints(rig.board);
   const CornerNoise& noise = rig.corner_noise;
   const Duration period = Duration::FromSeconds(1.0 / kCameraRateHz);
-  const Duration end = Duration::FromSeconds(motion.duration_s());
+  const Duration end = Duration::FromSeconds(path.duration_s);
 
   SimulatedFrames frames;
   for (Duration elapsed; elapsed < end; elapsed = elapsed + period) {
     ++frames.num_frames;
-    const Rigid3 T_c0_g = BoardInCamera(rig, motion.At(elapsed.seconds()).T_b_e);
+    const Rigid3 T_c0_g = BoardInCamera(rig, path.at(elapsed.seconds()).T_b_e);
     auto pixels = VisibleCorners(camera, T_c0_g, points_g);
     const auto blur =
-        pixels ? BlurLength(rig, motion, elapsed.seconds(), points_g) : std::optional<double>();
+        pixels ? BlurLength(rig, path, elapsed.seconds(), points_g) : std::optional<double>();
     if (!blur) {
       ++frames.num_out_of_image;
       continue;
@@ -78,7 +82,7 @@ SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time s
     const double smear = *blur / CornerSpacing(*pixels, neighbours);
     const double detected = 1.0 / (1.0 + std::exp((smear - noise.blur_at_half) / noise.blur_slope));
     const bool found = rng.Uniform() < detected || rig.exposure_s == 0.0;
-    const double stddev = std::hypot(noise.stddev_px, noise.blur_factor * *blur);
+    const double stddev = noise.Stddev(*blur);
     for (double& coordinate : pixels->reshaped()) coordinate += stddev * rng.Normal();
     if (!found) {
       ++frames.num_lost_to_blur;

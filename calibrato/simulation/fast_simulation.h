@@ -29,6 +29,9 @@ struct SimulatedFrames {
 ///               the motion lasts, its end excluded.
 [[nodiscard]] SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time start,
                                              Rng& rng);
+/// The same corners along any path, such as the one that the arm took (fidelity `physical`).
+[[nodiscard]] SimulatedFrames SimulateFrames(const Rig& rig, const CarrierPath& path, Time start,
+                                             Rng& rng);
 
 /// Pose of the board in camera 0 when the controlled frame is at T_b_e.
 [[nodiscard]] Rigid3 BoardInCamera(const Rig& rig, const Rigid3& T_b_e);

@@ -47,6 +47,8 @@ Vector3d Draw(Rng& rng) {
   return x;
 }
 
+constexpr int kStepsPerFilteredSample = 5;
+
 // What the digital output makes of a value.
 Vector3d Digital(Vector3d value, double range, double resolution) {
   for (double& x : value) {
@@ -56,11 +58,8 @@ Vector3d Digital(Vector3d value, double range, double resolution) {
   return value;
 }
 
-}  // namespace
-
-ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
+ImuMotion ImuOn(const Rig& rig, const CarrierState& state) {
   static const Eigen::Matrix3d R_w_b = ArmBaseInWorld().R;
-  const CarrierState state = motion.At(t_s);
   const Eigen::Matrix3d R_e_b = state.T_b_e.R.transpose();
   const ImuMotion motion_e{
       .R_w_i = R_w_b * state.T_b_e.R,
@@ -70,6 +69,16 @@ ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
       .accel_w = R_w_b * state.acceleration_b,
   };
   return MotionOfFrame(motion_e, rig.T_e_c0 * rig.T_c0_i);
+}
+
+}  // namespace
+
+ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s) {
+  return ImuOn(rig, motion.At(t_s));
+}
+
+ImuMotion ImuMotionAt(const Rig& rig, const CarrierPath& path, double t_s) {
+  return ImuOn(rig, path.at(t_s));
 }
 
 SimulatedImu SimulateImu(const std::function<ImuMotion(double t_s)>& motion_at, double duration_s,
@@ -85,18 +94,26 @@ SimulatedImu SimulateImu(const std::function<ImuMotion(double t_s)>& motion_at, 
   const ImuDisturbances& d = disturbances;
 
   SimulatedImu imu{{}, Vector3d::Zero(), Vector3d::Zero()};
-  LowPass low_pass(d.low_pass_hz, period_s / ticks_per_s);
+  // A filter works on what lies between samples too: it keeps vibrations from being folded down.
+  const int steps_per_sample = d.low_pass_hz > 0.0 ? kStepsPerFilteredSample : 1;
+  const double step_s = period_s / ticks_per_s / steps_per_sample;
+  LowPass low_pass(d.low_pass_hz, step_s);
   Vector3d gyro_bias = d.gyro_bias;
   Vector3d accel_bias = d.accel_bias;
   for (int64_t k = 0;; ++k) {
     const Duration elapsed = Duration::FromSeconds(static_cast<double>(k) * period_s);
     const double t_s = elapsed.seconds() / ticks_per_s;
     if (!(t_s < duration_s)) break;
-    const ImuMotion motion = motion_at(t_s);
-    Vector6d felt;
-    felt << PredictGyro(motion, gravity_w, d.intrinsics, Vector3d::Zero()),
-        PredictAccel(motion, gravity_w, d.intrinsics, Vector3d::Zero());
-    const Vector6d filtered = low_pass(felt);
+    // What the filter has seen since the sample before.
+    Vector6d filtered;
+    for (int i = k == 0 ? steps_per_sample - 1 : 0; i < steps_per_sample; ++i) {
+      const int steps_ahead = steps_per_sample - 1 - i;
+      const ImuMotion motion = motion_at(t_s - steps_ahead * step_s);
+      Vector6d felt;
+      felt << PredictGyro(motion, gravity_w, d.intrinsics, Vector3d::Zero()),
+          PredictAccel(motion, gravity_w, d.intrinsics, Vector3d::Zero());
+      filtered = low_pass(felt);
+    }
     const Vector3d gyro = filtered.head<3>() + gyro_bias + gyro_stddev * Draw(rng);
     const Vector3d accel = filtered.tail<3>() + accel_bias + accel_stddev * Draw(rng);
     const Time stamp = start + elapsed;
@@ -114,7 +131,11 @@ SimulatedImu SimulateImu(const std::function<ImuMotion(double t_s)>& motion_at, 
 }
 
 SimulatedImu SimulateImu(const Rig& rig, const TimedMotion& motion, Time start, Rng& rng) {
-  return SimulateImu([&](double t_s) { return ImuMotionAt(rig, motion, t_s); }, motion.duration_s(),
+  return SimulateImu(rig, PlannedPath(motion), start, rng);
+}
+
+SimulatedImu SimulateImu(const Rig& rig, const CarrierPath& path, Time start, Rng& rng) {
+  return SimulateImu([&](double t_s) { return ImuMotionAt(rig, path, t_s); }, path.duration_s,
                      {0.0, 0.0, -kStandardGravity}, rig.imu_noise, rig.imu_disturbances,
                      start + rig.time_offset_i_c, rng);
 }

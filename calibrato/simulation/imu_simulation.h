@@ -14,10 +14,12 @@ namespace calibrato {
 /// the derivatives of the loops' harmonics and of the time law, in closed form. So the truth shares
 /// no spline with any estimator.
 ///
-/// On the arm too the controlled frame follows the loops: camera and IMU see the same path, and the
-/// joints' interpolation between way-points stays out of both.
+/// At fidelity `fast` the controlled frame follows the loops on the arm too: camera and IMU see the
+/// same path, and the joints' interpolation between way-points stays out of both.
 /// @param t_s  Since the motion began [s]; before and after it the rig is at rest.
 [[nodiscard]] ImuMotion ImuMotionAt(const Rig& rig, const TimedMotion& motion, double t_s);
+/// ... on any path.
+[[nodiscard]] ImuMotion ImuMotionAt(const Rig& rig, const CarrierPath& path, double t_s);
 
 /// What an IMU recorded, and the biases that it had.
 struct SimulatedImu {
@@ -30,7 +32,8 @@ struct SimulatedImu {
 /// at those of the disturbances. Numbers are drawn alike for every setting, so that a disturbance
 /// switched on changes no draw.
 ///
-/// The low-pass is exact for what changes linearly between two samples, and begins settled.
+/// The low-pass is exact for what changes linearly between fifths of the sampling period, and
+/// begins settled.
 /// @param motion_at  For t_s in [0, duration_s), in order of time [s].
 /// @param gravity_w  [m/s^2]
 /// @param start  The IMU's clock at t_s = 0, where the first sample is taken; the next ones follow
@@ -43,6 +46,9 @@ struct SimulatedImu {
 /// The IMU of the rig during the motion, in standard gravity.
 /// @param start  The camera's clock when the motion begins, as for SimulateFrames.
 [[nodiscard]] SimulatedImu SimulateImu(const Rig& rig, const TimedMotion& motion, Time start,
+                                       Rng& rng);
+/// ... on any path.
+[[nodiscard]] SimulatedImu SimulateImu(const Rig& rig, const CarrierPath& path, Time start,
                                        Rng& rng);
 
 }  // namespace calibrato

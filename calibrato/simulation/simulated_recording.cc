@@ -39,18 +39,18 @@ std::string TruthYaml(const Rig& rig, const SimulatedImu& imu) {
   return ToYaml(truth);
 }
 
-std::string TruthPoses(const Rig& rig, const TimedMotion& motion, Time start) {
+std::string TruthPoses(const Rig& rig, const CarrierPath& path, Time start) {
   std::string text = "timestamp [ns],x,y,z,qw,qx,qy,qz\n";
   const Time start_imu = start + rig.time_offset_i_c;
   // In the time that the IMU's clock shows.
   const double ticks_per_s = 1.0 + 1e-6 * rig.imu_disturbances.clock_drift_ppm;
   const auto num_poses =
-      static_cast<int>(std::floor(motion.duration_s() * ticks_per_s * kTruthRateHz)) + 1;
+      static_cast<int>(std::floor(path.duration_s * ticks_per_s * kTruthRateHz)) + 1;
   const Duration period = Duration::FromSeconds(1.0 / kTruthRateHz);
   for (int k = 0; k < num_poses; ++k) {
     const Duration elapsed = period * k;
     const Rigid3 T_g_i =
-        BoardInCamera(rig, motion.At(elapsed.seconds() / ticks_per_s).T_b_e).Inverse() * rig.T_c0_i;
+        BoardInCamera(rig, path.at(elapsed.seconds() / ticks_per_s).T_b_e).Inverse() * rig.T_c0_i;
     const Eigen::Quaterniond q(T_g_i.R);
     text += std::to_string((start_imu + elapsed).nanoseconds());
     for (const double x : {T_g_i.t.x(), T_g_i.t.y(), T_g_i.t.z(), q.w(), q.x(), q.y(), q.z()}) {
@@ -82,17 +82,23 @@ std::string TimedMotionYaml(const TimedMotion& timed) {
 
 std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
                                                            const TimedMotion& motion, Time start,
-                                                           const SimulatedFrames& frames,
-                                                           const SimulatedImu& imu) {
-  return {{"cam0_corners.csv", CornerListText(frames.views, PointsPerTag(rig.board))},
-          {"imu0.csv", ImuListText(imu.stream)},
-          {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
-          {"sensor.yaml", SensorYaml(rig.cameras.front())},
-          {"target.yaml", ToYaml(ToValue(rig.board))},
-          {"rig.yaml", ToYaml(ToValue(rig))},
-          {"motion.yaml", TimedMotionYaml(motion)},
-          {"truth.yaml", TruthYaml(rig, imu)},
-          {"truth_poses.csv", TruthPoses(rig, motion, start)}};
+                                                           const SimulatedRun& run) {
+  std::map<std::string, std::string> files = {
+      {"imu0.csv", ImuListText(run.imu.stream)},
+      {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
+      {"sensor.yaml", SensorYaml(rig.cameras.front())},
+      {"target.yaml", ToYaml(ToValue(rig.board))},
+      {"rig.yaml", ToYaml(ToValue(rig))},
+      {"motion.yaml", TimedMotionYaml(motion)},
+      {"truth.yaml", TruthYaml(rig, run.imu)},
+      {"truth_poses.csv", TruthPoses(rig, run.path, start)}};
+  if (run.images.empty()) {
+    files["cam0_corners.csv"] = CornerListText(run.frames.views, PointsPerTag(rig.board));
+  }
+  for (const StampedPng& image : run.images) {
+    files["cam0/data/" + std::to_string(image.stamp.nanoseconds()) + ".png"] = image.png;
+  }
+  return files;
 }
 
 }  // namespace calibrato

@@ -4,22 +4,17 @@
 #include <string>
 
 #include "calibrato/motion/carrier.h"
-#include "calibrato/simulation/fast_simulation.h"
-#include "calibrato/simulation/imu_simulation.h"
+#include "calibrato/simulation/simulated_run.h"
 
 namespace calibrato {
 
 /// The files of a simulated recording by name, ready to be written: a folder of corners and IMU
 /// samples that opens like any other, and the truth beside it (docs/formats.md section 3). Poses
 /// are stamped by the IMU's clock.
-///
-///     cam0_corners.csv   sensor.yaml     what the camera saw
-///     imu0.csv           imu.yaml        what the IMU felt, and its noise
-///     target.yaml        rig.yaml        what was seen, and with what
-///     motion.yaml                        the motion with its timed path (joints too, on the arm)
-///     truth.yaml         truth_poses.csv camera, T_cam_imu, biases, gravity; T_g_i at 200 Hz
-[[nodiscard]] std::map<std::string, std::string> SimulatedRecordingFiles(
-    const Rig& rig, const TimedMotion& motion, Time start, const SimulatedFrames& frames,
-    const SimulatedImu& imu);
+/// @param start  The camera's clock when the motion begins.
+[[nodiscard]] std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
+                                                                         const TimedMotion& motion,
+                                                                         Time start,
+                                                                         const SimulatedRun& run);
 
 }  // namespace calibrato

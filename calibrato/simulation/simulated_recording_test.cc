@@ -28,7 +28,12 @@ struct Simulated {
     frames = SimulateFrames(rig, motion, start, rng);
     Rng imu_rng(2);
     imu = SimulateImu(rig, motion, start, imu_rng);
-    files = SimulatedRecordingFiles(rig, motion, start, frames, imu);
+    files = SimulatedRecordingFiles(rig, motion, start,
+                                    {.path = PlannedPath(motion),
+                                     .frames = frames,
+                                     .imu = imu,
+                                     .tracking = std::nullopt,
+                                     .images = {}});
   }
 };
 

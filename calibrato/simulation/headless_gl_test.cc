@@ -1,0 +1,75 @@
+#include "calibrato/simulation/headless_gl.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/motion/paper_scene.h"
+#include "calibrato/simulation/arm_scene.h"
+#include "calibrato/simulation/scene_view.h"
+
+namespace calibrato {
+namespace {
+
+// Runs a test of this program in a process of its own: one process has one way.
+int RunInItsOwnProcess(const std::string& environment, const std::string& test) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe");
+  return std::system(
+      (environment + " '" + program + "' --gtest_filter=" + test + " > /dev/null 2>&1").c_str());
+}
+
+TEST(HeadlessGl, EveryWayDraws) {
+  const std::string test = "SceneView.DepthIsAlongTheAxisInMetres";
+  EXPECT_EQ(RunInItsOwnProcess("MUJOCO_GL=egl", test), 0);
+  EXPECT_EQ(RunInItsOwnProcess("MUJOCO_GL=osmesa", test), 0);
+  EXPECT_NE(RunInItsOwnProcess("MUJOCO_GL=off", test), 0);
+}
+
+// An EGL that finds no driver.
+TEST(HeadlessGl, FallsBackToOsMesa) {
+  EXPECT_EQ(RunInItsOwnProcess("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json",
+                               "SceneView.DepthIsAlongTheAxisInMetres"),
+            0);
+}
+
+TEST(HeadlessGl, SaysWhatIsMissing) {
+  try {
+    const HeadlessGl gl(std::vector<std::string>{});
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("libosmesa6"), std::string::npos) << what;
+    EXPECT_NE(what.find("--fidelity fast"), std::string::npos) << what;
+  }
+  EXPECT_THROW(HeadlessGl({"vulkan"}), InputError);
+}
+
+TEST(HeadlessGlWays, FollowTheEnvironment) {
+  setenv("MUJOCO_GL", "off", 1);
+  EXPECT_TRUE(HeadlessGlWays().empty());
+  setenv("MUJOCO_GL", "osmesa", 1);
+  EXPECT_EQ(HeadlessGlWays(), std::vector<std::string>({"osmesa"}));
+  unsetenv("MUJOCO_GL");
+  EXPECT_EQ(HeadlessGlWays(), std::vector<std::string>({"egl", "osmesa"}));
+}
+
+// Depth is that of the scene: the camera looks straight at the wall behind the arm, 1.5 m behind
+// the base.
+TEST(SceneView, DepthIsAlongTheAxisInMetres) {
+  const HeadlessGl gl;
+  const ArmScene scene(PaperRig());
+  SceneView view(scene, gl);
+  Rigid3 T_w_c{Eigen::Matrix3d::Zero(), {-2.0, 0.9, 1.4}};
+  T_w_c.R.col(0) = -Eigen::Vector3d::UnitY();
+  T_w_c.R.col(1) = -Eigen::Vector3d::UnitZ();
+  T_w_c.R.col(2) = Eigen::Vector3d::UnitX();
+  const SceneImage image = view.Draw(T_w_c, {{320, 240}, 0.3, 0.225}, std::nullopt);
+  for (const size_t k : {size_t{0}, size_t{319}, size_t{320 * 120 + 160}, size_t{320 * 240 - 1}}) {
+    EXPECT_NEAR(image.depth[k], 3.5, 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace calibrato

@@ -1,0 +1,71 @@
+#include "calibrato/simulation/simulated_run.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <variant>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/motion/paper_scene.h"
+
+namespace calibrato {
+namespace {
+
+const Time kStart = Time::FromNanoseconds(1'600'000'000'000'000'000);
+
+TimedMotion Handcrafted(Carrier carrier) {
+  Motion motion = HandcraftedMotion(Task::kExtrinsic);
+  motion.carrier = carrier;
+  return std::get<TimedMotion>(PlanMotion(motion, PaperRig()));
+}
+
+TEST(SimulateRun, PhysicalCornersAndSamplesAreThoseOfTheExecutedPath) {
+  Rig rig = PaperRig();
+  rig.corner_noise = {
+      .stddev_px = 0.0, .blur_factor = 0.0, .blur_at_half = 0.5, .blur_slope = 0.05};
+  rig.imu_noise = {200.0, 0.0, 0.0, 0.0, 0.0};
+  const SimulatedRun run =
+      SimulateRun(rig, Handcrafted(Carrier::kArm), Fidelity::kPhysical, kStart, Rng(3));
+  ASSERT_EQ(run.frames.views.size(), 150u);
+  const Eigen::Matrix3Xd points_g = BoardPoints(rig.board);
+  for (const BoardView& view : run.frames.views) {
+    const CarrierState state = run.path.at((view.stamp - kStart).seconds());
+    const Rigid3 T_c0_g = BoardInCamera(rig, state.T_b_e);
+    for (Eigen::Index k = 0; k < points_g.cols(); ++k) {
+      EXPECT_LT(
+          (view.pixels.col(k) - *rig.cameras[0].model.Project(T_c0_g * points_g.col(k))).norm(),
+          1e-9);
+    }
+  }
+  for (size_t k = 0; k < run.imu.stream.gyro.size(); k += 50) {
+    const ImuMotion motion = ImuMotionAt(rig, run.path, 0.005 * static_cast<double>(k));
+    EXPECT_LT((run.imu.stream.gyro[k].value - motion.omega_i).norm(), 1e-12);
+  }
+}
+
+TEST(SimulateRun, ThePhysicalArmComesCloseToItsPlanButNotExactly) {
+  const TimedMotion motion = Handcrafted(Carrier::kArm);
+  const SimulatedRun run = SimulateRun(PaperRig(), motion, Fidelity::kPhysical, kStart, Rng(3));
+  ASSERT_TRUE(run.tracking);
+  EXPECT_LT(run.tracking->max_position_error_m, 0.005);
+  EXPECT_GT(run.tracking->max_position_error_m, 1e-6);
+  EXPECT_LT(run.tracking->max_torque_share, 1.0);
+  EXPECT_GT(run.tracking->max_torque_share, 0.1);
+  EXPECT_FALSE(SimulateRun(PaperRig(), motion, Fidelity::kFast, kStart, Rng(3)).tracking);
+}
+
+TEST(SimulateRun, RefusesDynamicsWithoutAnArm) {
+  EXPECT_THROW((void)SimulateRun(PaperRig(), Handcrafted(Carrier::kFree), Fidelity::kPhysical,
+                                 kStart, Rng(3)),
+               InputError);
+}
+
+TEST(Fidelity, HasNamesAndKnowsThem) {
+  for (const Fidelity fidelity : {Fidelity::kFast, Fidelity::kPhysical, Fidelity::kRendered}) {
+    EXPECT_EQ(FidelityFromName(FidelityName(fidelity)), fidelity);
+  }
+  EXPECT_THROW((void)FidelityFromName("quick"), InputError);
+}
+
+}  // namespace
+}  // namespace calibrato

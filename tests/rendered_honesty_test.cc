@@ -1,0 +1,173 @@
+// From the arm's dynamics over pixels to parameters: do both estimators know how wrong they are?
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "calibrato/base/full_sample_for_test.h"
+#include "calibrato/calibration/camera_calibration.h"
+#include "calibrato/calibration/camera_imu_calibration.h"
+#include "calibrato/detection/detect.h"
+#include "calibrato/recording/photo.h"
+#include "calibrato/simulation/rig_distribution.h"
+#include "calibrato/simulation/simulated_run.h"
+
+namespace calibrato {
+namespace {
+
+// Normalised squared errors over rigs.
+struct Honesty {
+  double degrees = 0.0;   ///< Of freedom, of one rig.
+  double quantile = 0.0;  ///< 95 % of chi-square with so many.
+  int num_rigs = 0;
+  int num_inside = 0;
+  double sum = 0.0;
+
+  void Add(const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance) {
+    const double squared = error.dot(covariance.ldlt().solve(error));
+    ++num_rigs;
+    num_inside += squared < quantile ? 1 : 0;
+    sum += squared;
+  }
+  [[nodiscard]] double ErrorOverBound() const { return std::sqrt(sum / (degrees * num_rigs)); }
+};
+
+struct Judgement {
+  Honesty camera{.degrees = 4.0, .quantile = 9.488};
+  Honesty camera_imu{.degrees = 7.0, .quantile = 14.067};
+  int num_not_converged = 0;
+  double corner_noise_px = 0.0;  ///< As the camera's estimator found it, the mean over rigs.
+};
+
+// A rig of the paper's distribution with a time offset and biases.
+Rig DrawTruth(Rng& rng) {
+  Rig rig = DrawRig(RigDistribution::kPaper, rng);
+  rig.time_offset_i_c = Duration::FromSeconds(rng.Uniform(-0.02, 0.02));
+  for (int axis = 0; axis < 3; ++axis) {
+    rig.imu_disturbances.gyro_bias(axis) = 0.01 * rng.Normal();
+    rig.imu_disturbances.accel_bias(axis) = 0.1 * rng.Normal();
+  }
+  return rig;
+}
+
+std::vector<BoardView> Detected(const SimulatedRun& run, const Rig& rig) {
+  ImageSource source;
+  for (const StampedPng& image : run.images) {
+    source.names.push_back(std::to_string(image.stamp.nanoseconds()));
+    source.stamps.push_back(image.stamp);
+  }
+  source.load = [&](size_t k) { return DecodePhoto({run.images[k].png, ""}, source.names[k]); };
+  return DetectBoards(source, rig.board).views;
+}
+
+void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* judgement) {
+  Rng rng(static_cast<uint64_t>(number));
+  Rig rig = DrawTruth(rng);
+  effect(&rig);
+  Motion motion = HandcraftedMotion(Task::kExtrinsic);
+  motion.carrier = Carrier::kArm;
+  const SimulatedRun run =
+      SimulateRun(rig, std::get<TimedMotion>(PlanMotion(motion, rig)), Fidelity::kRendered,
+                  Time::FromNanoseconds(1'000'000'000'000), rng);
+  const Camera& truth = rig.cameras.front();
+  CameraProblem intrinsic;
+  intrinsic.model = truth.model.name();
+  intrinsic.resolution = truth.resolution;
+  intrinsic.views = Detected(run, rig);
+  const CameraCalibration camera = CalibrateCamera(intrinsic);
+
+  CameraImuProblem extrinsic;
+  extrinsic.cameras.push_back({truth.model, intrinsic.views, IntrinsicsKnowledge::kExact, {}});
+  extrinsic.imus.push_back({run.imu.stream, rig.imu_noise, ImuModelKind::kCalibrated});
+  CameraImuOptions options;
+  options.knot_spacing_s = 0.07;
+  const CameraImuCalibration camera_imu = CalibrateCameraImu(extrinsic, options);
+
+  if (camera.termination != Termination::kConverged ||
+      camera_imu.termination != Termination::kConverged) {
+    ++judgement->num_not_converged;
+    return;
+  }
+  judgement->corner_noise_px += camera.noise_stddev_px;
+  judgement->camera.Add(camera.model->focal_and_centre() - truth.model.focal_and_centre(),
+                        camera.covariance.topLeftCorner<4, 4>());
+  const CameraCalibrationState& estimate = camera_imu.state->cameras.front();
+  Eigen::VectorXd error(7);
+  error << estimate.T_c_i.DifferenceTo(rig.T_c0_i),
+      estimate.time_offset_s - rig.time_offset_i_c.seconds();
+  judgement->camera_imu.Add(error, camera_imu.information.covariance.topLeftCorner<7, 7>());
+}
+
+Judgement Judge(const std::string& name, int num_rigs, const std::function<void(Rig*)>& effect) {
+  Judgement judgement;
+  for (int i = 0; i < num_rigs; ++i) JudgeRig(i, effect, &judgement);
+  judgement.corner_noise_px /= std::max(1, judgement.camera.num_rigs);
+  std::printf(
+      "%-28s corners %.3f px | camera: %d of %d inside, error over bound %.2f | "
+      "camera-imu: %d of %d, %.2f | not converged %d\n",
+      name.c_str(), judgement.corner_noise_px, judgement.camera.num_inside,
+      judgement.camera.num_rigs, judgement.camera.ErrorOverBound(), judgement.camera_imu.num_inside,
+      judgement.camera_imu.num_rigs, judgement.camera_imu.ErrorOverBound(),
+      judgement.num_not_converged);
+  std::fflush(stdout);
+  return judgement;
+}
+
+// The paper's effects alone: an ideal sensor of the paper's rigs, the IMU's noise. 16 of 20 rigs
+// inside 95 % ellipsoids, and the mean within its own 95 % interval.
+TEST(RenderedHonesty, OfBothEstimatorsOnThePapersRigs) {
+  const int n = FullSample() ? 20 : 3;
+  const Judgement judgement = Judge("paper", n, [](Rig*) {});
+  EXPECT_EQ(judgement.num_not_converged, 0);
+  for (const Honesty& honesty : {judgement.camera, judgement.camera_imu}) {
+    EXPECT_GE(honesty.num_inside, FullSample() ? 16 : 2);
+    // 1.96 standard deviations of a mean of chi-squares; three for the small sample.
+    const double width = (FullSample() ? 1.96 : 3.0) * std::sqrt(2.0 / (honesty.degrees * n));
+    EXPECT_NEAR(std::pow(honesty.ErrorOverBound(), 2), 1.0, width);
+  }
+}
+
+// What each effect of real arms, cameras and IMUs does to that, at its ordinary size. Every solve
+// converges, whatever its bounds are worth.
+TEST(RenderedHonesty, EffectByEffect) {
+  const std::vector<std::pair<std::string, std::function<void(Rig*)>>> effects = {
+      {"exposure 5 ms", [](Rig* rig) { rig->exposure_s = 0.005; }},
+      {"sensor noise",
+       [](Rig* rig) {
+         rig->image_disturbances.read_noise = 1.5;
+         rig->image_disturbances.shot_noise = 0.02;
+       }},
+      {"defocus 0.5 px", [](Rig* rig) { rig->image_disturbances.defocus_px = 0.5; }},
+      {"light",
+       [](Rig* rig) {
+         rig->image_disturbances.vignetting = 0.3;
+         rig->image_disturbances.lighting_gradient = {0.2, -0.1};
+       }},
+      {"rolling shutter 30 us", [](Rig* rig) { rig->image_disturbances.line_delay_s = 3e-5; }},
+      {"stamp jitter 0.5 ms", [](Rig* rig) { rig->image_disturbances.stamp_jitter_s = 5e-4; }},
+      {"5 % of frames dropped", [](Rig* rig) { rig->image_disturbances.drop_probability = 0.05; }},
+      {"elastic gears 15 Hz", [](Rig* rig) { rig->arm_disturbances.mode_hz = 15.0; }},
+      {"torque ripple", [](Rig* rig) { rig->arm_disturbances.torque_ripple = 0.5; }},
+      {"IMU low-pass 60 Hz", [](Rig* rig) { rig->imu_disturbances.low_pass_hz = 60.0; }},
+      {"clock drift 50 ppm", [](Rig* rig) { rig->imu_disturbances.clock_drift_ppm = 50.0; }},
+  };
+  const int n = FullSample() ? 10 : 1;
+  const std::function<void(Rig*)> all = [&](Rig* rig) {
+    for (const auto& [name, effect] : effects) effect(rig);
+  };
+  const size_t num_tried = FullSample() ? effects.size() : 2;
+  for (size_t i = 0; i < num_tried; ++i) {
+    EXPECT_EQ(Judge(effects[i].first, n, effects[i].second).num_not_converged, 0);
+  }
+  EXPECT_EQ(Judge("all of them", n, all).num_not_converged, 0);
+}
+
+}  // namespace
+}  // namespace calibrato
