@@ -70,6 +70,9 @@ class ArrowheadCholesky {
   /// x = -(H + damping diag H)^-1 g.
   [[nodiscard]] Eigen::VectorXd Step() const;
 
+  /// (H + damping diag H)^-1 b for each column b: blocks in order, then the border.
+  [[nodiscard]] Eigen::MatrixXd Solve(const Eigen::MatrixXd& right_sides) const;
+
   /// What the data know about the border where the blocks are unknown: the Schur complement
   /// C - sum of E D^-1 E', whose inverse is the marginal covariance of the border.
   [[nodiscard]] Eigen::MatrixXd BorderInformation() const;

@@ -29,6 +29,9 @@ struct CornerNoise {
   double blur_slope = 0.05;   ///< [-] > 0
 };
 
+/// Rate of the camera in the paper's scene [Hz].
+inline constexpr double kPaperCameraRateHz = 10.0;
+
 /// A camera-IMU rig on its carrier, with the board before it: the truth of a simulation.
 struct Rig {
   std::vector<Camera> cameras;
@@ -38,8 +41,9 @@ struct Rig {
   ImuNoise imu_noise;
   ImuDisturbances imu_disturbances;
   Board board;
-  Rigid3 T_w_g;             ///< Where the board stands.
-  double exposure_s = 0.0;  ///< [s] >= 0; 0 means no motion blur.
+  Rigid3 T_w_g;                                ///< Where the board stands.
+  double exposure_s = 0.0;                     ///< [s] >= 0; 0 means no motion blur.
+  double camera_rate_hz = kPaperCameraRateHz;  ///< [Hz] > 0, at most 1000.
   CornerNoise corner_noise;
 };
 
