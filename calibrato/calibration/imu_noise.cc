@@ -24,7 +24,9 @@ constexpr double kGapPeriods = 3.0;
 constexpr double kMovedRate = 0.02;  // [rad/s]
 constexpr double kMovedForce = 0.2;  // [m/s^2]
 constexpr double kMovedSigmas = 8.0;
-constexpr double kTooShort = 0.3;      // Relative sigma of a figure.
+// Of the means over a second, over the whole log: in limits of a change. Biases drift by less.
+constexpr double kMovedSlowly = 3.0;
+constexpr double kTooShort = 0.15;     // Relative sigma of a figure.
 constexpr double kShows = 2.0;         // In sigmas of its square.
 constexpr double kOneSided95 = 1.645;  // In sigmas.
 constexpr double kFlickerShows = 3.0;  // Likewise.
@@ -35,21 +37,32 @@ constexpr double kModelError = 0.05;
 constexpr double kFlicker = 2.0 * std::numbers::ln2 / std::numbers::pi;
 constexpr double kMadToSigma = 1.4826;
 
+std::string Number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.3g", x);
+  return text;
+}
+
 double MedianOf(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
-// Finite and ascending.
+// Finite, sorted by time, the first of each stamp: a stamp that is far ahead becomes a part of its
+// own, and costs no other sample.
 Samples InOrder(const Samples& samples) {
   Samples kept;
   kept.reserve(samples.size());
   for (const VectorSample& sample : samples) {
-    if (sample.value.allFinite() && (kept.empty() || kept.back().stamp < sample.stamp)) {
-      kept.push_back(sample);
-    }
+    if (sample.value.allFinite()) kept.push_back(sample);
   }
+  std::stable_sort(kept.begin(), kept.end(),
+                   [](const VectorSample& a, const VectorSample& b) { return a.stamp < b.stamp; });
+  kept.erase(
+      std::unique(kept.begin(), kept.end(),
+                  [](const VectorSample& a, const VectorSample& b) { return a.stamp == b.stamp; }),
+      kept.end());
   return kept;
 }
 
@@ -90,6 +103,13 @@ void RefuseMotion(const std::string& sensor, const std::vector<double>& series, 
     means.push_back(sum / static_cast<double>(in_second));
   }
   if (means.size() < 2) return;
+  const auto [lowest, highest] = std::minmax_element(means.begin(), means.end());
+  if (*highest - *lowest > kMovedSlowly * limit) {
+    throw InputError({"the IMU was moved", sensor,
+                      "its mean over a second drifts by " + Number(*highest - *lowest) +
+                          " in the part that is looked at",
+                      "record it lying still, on something heavy, for three hours or more"});
+  }
   std::vector<double> changes;
   for (size_t k = 1; k < means.size(); ++k) changes.push_back(std::abs(means[k] - means[k - 1]));
   const double median = MedianOf(changes);
@@ -123,7 +143,8 @@ NoiseSlope LargestPart(const Eigen::Vector3d& squared, double tau_s) {
 // The covariance, at lag l, of what a tau's differences are made of: second differences of the
 // integrated noise. That of the integral itself is, but for what second differences do not see,
 //     -N^2 |l| / 2 + B^2 l^2 ln|l| / (2 pi) + K^2 |l|^3 / 12,
-// so that at tau_1 = tau_2 and lag 0 it is 2 tau^2 sigma^2(tau). Zero beyond tau_1 + tau_2.
+// so that at tau_1 = tau_2 and lag 0 it is 2 tau^2 sigma^2(tau). Zero beyond tau_1 + tau_2, but for
+// the part of B, which falls as 1 / l^2 from there and is cut off.
 double DifferencesCovariance(const Eigen::Vector3d& squared, double tau_1, double tau_2,
                              double lag) {
   constexpr std::array<double, 3> kSecondDifference = {1.0, -2.0, 1.0};
@@ -311,12 +332,6 @@ AxisResult EstimateAxis(const std::vector<double>& series, double period_s) {
     result.noise.relative_sigma.push_back(1.0 / std::sqrt(2.0 * degrees));
   }
   return result;
-}
-
-std::string Number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.3g", x);
-  return text;
 }
 
 SensorNoiseEstimate EstimateSensor(const std::string& name, const Samples& recorded,

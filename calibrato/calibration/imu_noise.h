@@ -13,7 +13,7 @@ namespace calibrato {
 /// A density with its uncertainty.
 struct NoiseFigure {
   double value = 0.0;
-  /// Standard deviation over the value; above about 0.3 the log is too short to tell.
+  /// Standard deviation over the value; above 0.15 there is a warning.
   double relative_sigma = 0.0;
   /// Where the Allan deviation does not show it: `value` is what it is below of, with 95 %
   /// probability, else what is measured.
@@ -24,8 +24,8 @@ struct NoiseFigure {
 ///
 ///     sigma^2(tau) = N^2 / tau + (2 ln 2 / pi) B^2 + K^2 tau / 3
 ///
-/// (IEEE Std 952-1997, annex C), N, B and K not below zero, B only where it is larger than three
-/// of its sigmas. Values at taus of 8, 16, 32 .. periods, in their logarithms,
+/// (IEEE Std 952-1997, annex C), N, B and K not below zero, B only where its square is larger
+/// than three sigmas of the square. Values at taus of 8, 16, 32 .. periods, in their logarithms,
 /// are weighted by their degrees of freedom; sigmas rest on the covariance that they have between
 /// them, for Gaussian noise as it was fitted.
 struct AxisNoise {
@@ -60,7 +60,8 @@ struct ImuNoiseEstimate {
 /// @param stream  As recorded; what is not finite, out of order or doubled is left out.
 /// @throws InputError: less than 10 s or 1000 samples without a gap, a sensor whose readings never
 /// change, or an IMU that was moved: means over neighbouring seconds differ by more than 0.02 rad/s
-/// or 0.2 m/s^2, and by more than eight sigmas of the noise itself.
+/// or 0.2 m/s^2, and by more than eight sigmas of the noise itself; or means over a second, of the
+/// whole part, by more than 0.06 rad/s or 0.6 m/s^2.
 [[nodiscard]] ImuNoiseEstimate EstimateImuNoise(const std::string& name, const ImuStream& stream);
 
 }  // namespace calibrato

@@ -116,6 +116,32 @@ void ExpectRefused(const ImuStream& stream, const std::string& why) {
   }
 }
 
+// One stamp of another clock costs one sample, wherever it stands.
+TEST(EstimateImuNoise, BearsAStrayStamp) {
+  ImuStream log = Log(kPhone, 100.0, 6);
+  const double expected = EstimateImuNoise("imu0", log).gyro.white.value;
+  log.gyro[10].stamp = log.gyro[10].stamp + Duration::FromSeconds(1e9);
+  const ImuNoiseEstimate estimate = EstimateImuNoise("imu0", log);
+  EXPECT_NEAR(estimate.gyro.white.value, expected, 1e-2 * expected);
+  EXPECT_GT(estimate.gyro.duration_s, 99.0);
+}
+
+// A hand that turns it slowly: neighbouring seconds hardly differ.
+TEST(EstimateImuNoise, RefusesASlowTilt) {
+  ImuStream log = Log(kPhone, 300.0, 7);
+  for (VectorSample& sample : log.accel) {
+    const double angle = 0.01 * (sample.stamp - log.accel.front().stamp).seconds();
+    sample.value += 9.8 * Vector3d(std::sin(angle), 0.0, std::cos(angle) - 1.0);
+  }
+  try {
+    (void)EstimateImuNoise("imu0", log);
+    FAIL() << "was taken for lying still";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the IMU was moved, imu0 accelerometer"));
+    EXPECT_THAT(error.what(), HasSubstr("drifts by"));
+  }
+}
+
 TEST(EstimateImuNoise, RefusesWhatTellsNoNoise) {
   ImuStream moved = Log(kPhone, 60.0, 4);
   for (size_t k = 6'000; k < 6'400; ++k) moved.gyro[k].value.y() += 0.3;

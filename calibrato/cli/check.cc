@@ -40,30 +40,16 @@ struct Options {
   std::string out;
 };
 
-// The recording; without cameras where it has none and none were asked for, with a word on why.
-Recording OpenForCheck(const Options& options, const RecordingOptions& recording_options,
+// The recording; without cameras where it has none and none were asked for.
+Recording OpenForCheck(const Options& options, RecordingOptions recording_options,
                        std::vector<Finding>* findings) {
-  try {
-    return OpenRecording(options.recording, recording_options);
-  } catch (const InputError& error) {
-    if (!options.cameras.empty() || !options.target.empty() ||
-        !recording_options.image_globs.empty()) {
-      throw;
-    }
-    RecordingOptions imus_alone = recording_options;
-    imus_alone.with_cameras = false;
-    Recording recording;
-    try {
-      recording = OpenRecording(options.recording, imus_alone);
-    } catch (const InputError&) {
-      throw error;
-    }
-    if (recording.imus.empty()) throw;
+  recording_options.cameras_may_be_missing = options.cameras.empty() && options.target.empty();
+  Recording recording = OpenRecording(options.recording, recording_options);
+  if (recording.cameras.empty()) {
     findings->push_back(
-        {Severity::kInfo,
-         std::string("the IMU alone is checked, since there are no cameras: ") + error.what(), ""});
-    return recording;
+        {Severity::kInfo, "the IMU alone is checked, since there are no cameras", ""});
   }
+  return recording;
 }
 
 std::vector<Imu> ReadImus(const Options& options, const Recording& recording,
@@ -94,14 +80,15 @@ std::vector<Camera> ReadCameras(const Options& options, const Recording& recordi
   return chain;
 }
 
+// In the order in which they were recorded.
 std::vector<Time> StampsOf(const CameraRecording& camera) {
   std::vector<Time> stamps;
   if (const auto* views = std::get_if<std::vector<BoardView>>(&camera.data)) {
     for (const BoardView& view : *views) stamps.push_back(view.stamp);
   } else {
-    for (const RecordedImage& image : std::get<CameraImages>(camera.data).list) {
-      stamps.push_back(image.stamp);
-    }
+    const auto& images = std::get<CameraImages>(camera.data);
+    if (!images.stamps_as_recorded.empty()) return images.stamps_as_recorded;
+    for (const RecordedImage& image : images.list) stamps.push_back(image.stamp);
   }
   return stamps;
 }
@@ -163,7 +150,7 @@ CameraToCheck LookAtCamera(const Recording& recording, size_t n, const std::opti
   CameraRecording of_camera = recording.cameras[n];
   if (!of_camera.resolution && !chain.empty()) of_camera.resolution = chain[n].resolution;
   CameraToCheck camera;
-  camera.name = of_camera.name;
+  camera.name = "cam" + std::to_string(n);  // As the calibration calls it; of_camera's is a topic.
   camera.has_images = std::holds_alternative<CameraImages>(of_camera.data);
   camera.resolution = of_camera.resolution;
   if (!chain.empty()) camera.model = chain[n].model;
@@ -176,7 +163,9 @@ CameraToCheck LookAtCamera(const Recording& recording, size_t n, const std::opti
       RecordingWindow of_one = options.window;
       if (window && !camera.stamps.empty()) {
         // Counted from this camera's own first image.
-        const double ahead_s = (StampsOf(of_camera).front() - window->zero).seconds();
+        const std::vector<Time> stamps = StampsOf(of_camera);
+        const double ahead_s =
+            (*std::min_element(stamps.begin(), stamps.end()) - window->zero).seconds();
         if (of_one.from_s) *of_one.from_s -= ahead_s;
         if (of_one.to_s) *of_one.to_s -= ahead_s;
       }
@@ -200,6 +189,11 @@ CameraToCheck LookAtCamera(const Recording& recording, size_t n, const std::opti
       if (!camera.resolution && !images.list.empty()) {
         camera.resolution = GreyOf(images.reader->Read(0)).resolution;
       }
+    }
+    if (!chain.empty() && camera.resolution && camera.resolution != chain[n].resolution) {
+      camera.model.reset();
+      throw InputError({"another image size", "", "the camera chain's is not that of the recording",
+                        "give the camera chain of these images"});
     }
   } catch (const InputError& error) {
     camera.search_findings.push_back({Severity::kFail, camera.name + ": " + error.what(), ""});

@@ -105,7 +105,7 @@ TEST_F(CheckCommand, RefusesInOneLine) {
   };
   const std::string imu = recording_ + "/imu.yaml";
   refused({"--imu", imu, "--imu", imu}, "wrong number of --imu");
-  refused({"--images", "*.png"}, "");
+  refused({"--images", "*.png"}, "no image matches '*.png'");
   refused({"--target", scratch_.Path("absent.yaml")}, "absent.yaml");
   const Ended absent = RunProgram({"check", scratch_.Path("absent")});
   EXPECT_EQ(absent.exit_code, 2);

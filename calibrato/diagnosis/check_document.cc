@@ -362,11 +362,11 @@ std::string CheckText(const RecordingToCheck& recording, const RecordingCheck& c
   }
   for (const ExpectedSigma& parameter : check.expected) {
     const bool is_judged = !std::isnan(parameter.enough);
-    text += Format("%-20s expected sigma %s%s\n", parameter.name.c_str(),
-                   std::isnan(parameter.sigma) ? "none" : Format("%.2g", parameter.sigma).c_str(),
-                   !is_judged                            ? ""
-                   : parameter.verdict == Verdict::kPass ? ": enough"
-                                                         : (": " + parameter.advice).c_str());
+    text +=
+        Format("%-20s expected sigma %s%s\n", parameter.name.c_str(), SigmaText(parameter).c_str(),
+               !is_judged                            ? ""
+               : parameter.verdict == Verdict::kPass ? ": enough"
+                                                     : (": " + parameter.advice).c_str());
   }
   text += "verdict: " + std::string(VerdictName(VerdictOf(check.findings))) + "\n";
   for (const Finding& finding : check.findings) {

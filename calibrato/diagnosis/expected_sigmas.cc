@@ -148,6 +148,14 @@ std::vector<ExpectedSigma> ExpectedExtrinsics(const CameraImuProblem& problem) {
   return expected;
 }
 
+std::string SigmaText(const ExpectedSigma& parameter) {
+  if (std::isnan(parameter.sigma)) return "none";
+  const Kind& kind = KindOf(parameter.name);
+  // Shapes and distortion have no unit.
+  if (&kind == &kIntrinsics && std::isnan(parameter.enough)) return Format("%.2g", parameter.sigma);
+  return Format("%.2g %s", parameter.sigma / kind.one_unit, kind.unit);
+}
+
 std::vector<Finding> FindingsOnExpectedSigmas(const std::vector<ExpectedSigma>& expected) {
   std::vector<Finding> findings;
   for (size_t first = 0; first < expected.size();) {
@@ -163,9 +171,7 @@ std::vector<Finding> FindingsOnExpectedSigmas(const std::vector<ExpectedSigma>& 
       const ExpectedSigma& parameter = expected[end];
       if (parameter.verdict == Verdict::kPass) continue;
       names += (names.empty() ? "" : ", ") + parameter.name;
-      names += std::isnan(parameter.sigma)
-                   ? " (does not show)"
-                   : Format(" (%.2g %s)", parameter.sigma / kind.one_unit, kind.unit);
+      names += std::isnan(parameter.sigma) ? " (does not show)" : " (" + SigmaText(parameter) + ")";
       const auto size = [](const ExpectedSigma& p) {
         return std::isnan(p.sigma) ? std::numeric_limits<double>::infinity() : p.sigma;
       };

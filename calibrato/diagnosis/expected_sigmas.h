@@ -36,6 +36,9 @@ struct ExpectedSigma {
 /// @pre Streams are ascending and finite.
 [[nodiscard]] std::vector<ExpectedSigma> ExpectedExtrinsics(const CameraImuProblem& problem);
 
+/// "0.24 degrees", "1.3 mm", "0.05 ms", "2.1 px"; "none" where the motion does not show it.
+[[nodiscard]] std::string SigmaText(const ExpectedSigma& parameter);
+
 /// The parameters that are not enough, those of a camera and a kind (cam0.rot) in one finding with
 /// the advice for the worst of them.
 [[nodiscard]] std::vector<Finding> FindingsOnExpectedSigmas(

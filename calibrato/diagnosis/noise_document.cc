@@ -23,7 +23,9 @@ Value AxisValue(const AxisNoise& axis) {
   }
   Value value = Value::Object();
   value.Set("noise_density", axis.white.value)
+      .Set("noise_density_is_upper_bound", axis.white.is_upper_bound)
       .Set("random_walk", axis.walk.value)
+      .Set("random_walk_is_upper_bound", axis.walk.is_upper_bound)
       .Set("bias_instability", axis.bias_instability)
       .Set("tau_s", std::move(tau))
       .Set("deviation", std::move(deviation))

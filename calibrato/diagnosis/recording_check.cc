@@ -14,6 +14,8 @@ namespace calibrato {
 namespace {
 
 constexpr double kSeldom = 0.5;
+// Of the speeds of rotation, below which nothing says that camera and IMU were on one body.
+constexpr double kNoCorrelation = 0.4;
 constexpr size_t kViewsForALens = kMinViews;
 
 std::vector<Time> StampsOfViews(const std::vector<BoardView>& views) {
@@ -42,8 +44,9 @@ CheckedBoard BoardOf(const CameraToCheck& camera) {
   CheckedBoard board;
   board.camera = camera.name;
   const StreamTiming seen = TimingOf(StampsOfViews(camera.views));
-  board.num_images = camera.views.size() +
-                     (camera.has_images ? camera.stamps_without_board.size() : seen.num_missing);
+  board.num_images =
+      camera.views.size() + (camera.has_images ? camera.stamps_without_board.size()
+                                               : seen.num_missing - seen.num_missing_in_pauses);
   board.longest_away_s = seen.longest_gap_s;
   if (!camera.resolution) return board;
   board.coverage = CoverageOf(camera.views, *camera.resolution);
@@ -177,6 +180,19 @@ void CompareClocks(const std::vector<CheckedCamera>& cameras,
 void CheckExtrinsics(const RecordingToCheck& recording, const std::vector<CheckedCamera>& cameras,
                      const std::vector<ImuStream>& mended, RecordingCheck* check) {
   if (VerdictOf(check->findings) == Verdict::kFail || mended.empty() || cameras.empty()) return;
+  // Start values would be found in noise.
+  bool moved_together = true;
+  for (const CheckedClock& clock : check->clocks) {
+    if (clock.comparison.correlation >= kNoCorrelation) continue;
+    moved_together = false;
+    check->findings.push_back(
+        {Severity::kInconclusive,
+         clock.camera + Format(": it did not turn with %s (correlation %.2f): of where they are "
+                               "from each other nothing can be said",
+                               clock.imu.c_str(), clock.comparison.correlation),
+         "mount both on one rigid body, keep the board still, and turn about all axes"});
+  }
+  if (!moved_together) return;
   CameraImuProblem problem;
   problem.gravity = recording.gravity;
   for (const CheckedCamera& camera : cameras) {

@@ -55,6 +55,21 @@ TEST(CheckRecording, ExpectsIntrinsicsWhereTheyAreNotKnown) {
   EXPECT_EQ(check.clocks.size(), 1U);
 }
 
+// A camera that stood still beside an IMU that was shaken: of another IMU's recording.
+TEST(CheckRecording, ExpectsNothingWhereCameraAndImuDidNotMoveTogether) {
+  RecordingToCheck recording = Shaken();
+  SyntheticCameraImu other;
+  other.slowest_rad_s = 3.1;
+  other.rotation_of_axis = Eigen::Vector3d(-1.0, 0.3, 2.0);
+  Rng rng(5);
+  recording.imus[0].recording.stream = std::move(other.Problem(rng).imus[0].stream);
+  const RecordingCheck check = CheckRecording(recording);
+  ASSERT_EQ(check.clocks.size(), 1U);
+  ASSERT_LT(check.clocks[0].comparison.correlation, 0.4);
+  EXPECT_GE(VerdictOf(check.findings), Verdict::kInconclusive);
+  EXPECT_TRUE(check.expected.empty());
+}
+
 TEST(CheckRecording, TakesCamerasAlone) {
   RecordingToCheck recording = Shaken();
   recording.imus.clear();
@@ -138,6 +153,7 @@ TEST(CheckRecording, PutsTheWorstFirst) {
   EXPECT_THAT(check.findings.front().what, HasSubstr("it is in g"));
   EXPECT_THAT(check.findings.back().what, HasSubstr("repeat the stamp"));
   EXPECT_EQ(check.VerdictOn("imu0 gyroscope"), Verdict::kWarn);
+  EXPECT_EQ(check.VerdictOn("imu0 accelerometer"), Verdict::kFail);
   EXPECT_EQ(check.VerdictOn("imu0"), Verdict::kFail);
   EXPECT_TRUE(check.expected.empty());
 }

@@ -47,7 +47,7 @@ std::vector<Span> SpansOf(const Samples& samples, Time begin, size_t num_spans) 
   return spans;
 }
 
-// The variance of one sample, by the quieter half of the spans: while a rig moves, neighbours
+// The variance of one sample, by the quietest tenth of the spans: while a rig moves, neighbours
 // differ by its motion too.
 double QuietVariance(const std::vector<Span>& spans) {
   std::vector<double> variances;
@@ -117,8 +117,9 @@ std::optional<RestNoise> NoiseAtRest(const ImuStream& stream) {
   const Time begin = std::max(stream.gyro.front().stamp, stream.accel.front().stamp);
   const Time end = std::min(stream.gyro.back().stamp, stream.accel.back().stamp);
   const double duration_s = (end - begin).seconds();
-  constexpr double kLongest = 1e6;  // [s] A recording of more has stamps of two clocks.
-  if (!(duration_s >= kMinRest && duration_s <= kLongest)) return std::nullopt;
+  // With pauses far longer than what was recorded, spans would be many and empty.
+  const double longest_s = 10.0 * static_cast<double>(stream.gyro.size()) * kSpan;
+  if (!(duration_s >= kMinRest && duration_s <= longest_s)) return std::nullopt;
   const auto num_spans = static_cast<size_t>(duration_s / kSpan);
   const std::vector<Span> gyro = SpansOf(stream.gyro, begin, num_spans);
   const std::vector<Span> accel = SpansOf(stream.accel, begin, num_spans);

@@ -14,7 +14,7 @@ namespace calibrato {
 struct RestNoise {
   Time begin;
   double duration_s = 0.0;           ///< At least 1 s.
-  double gyro_noise_density = 0.0;   ///< Mean of the three axes [rad/s/sqrt(Hz)].
+  double gyro_noise_density = 0.0;   ///< Root mean square of the axes [rad/s/sqrt(Hz)].
   double accel_noise_density = 0.0;  ///< [m/s^2/sqrt(Hz)]
 };
 

@@ -56,6 +56,17 @@ TEST(NoiseAtRest, NothingIsSaidOfAFewSamples) {
   EXPECT_FALSE(NoiseAtRest(stream).has_value());
 }
 
+// Six seconds, ten days of nothing, six seconds: spans of all that time would take gigabytes.
+TEST(NoiseAtRest, NothingIsSaidOfClocksThatJump) {
+  ImuStream stream = Stream(0.0);
+  for (std::vector<VectorSample>* samples : {&stream.gyro, &stream.accel}) {
+    for (size_t k = 1200; k < samples->size(); ++k) {
+      (*samples)[k].stamp = (*samples)[k].stamp + Duration::FromSeconds(900'000.0);
+    }
+  }
+  EXPECT_FALSE(NoiseAtRest(stream).has_value());
+}
+
 TEST(FindingsOnRestNoise, NameASensorThatIsNoisierThanStated) {
   const RestNoise found{Time(), 3.0, kGyroDensity, kAccelDensity};
   ImuNoise stated;

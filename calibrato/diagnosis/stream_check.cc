@@ -165,7 +165,8 @@ bool CheckSizes(const std::string& name, const ImuStream& stream, double gravity
     return false;
   }
   const std::string what =
-      name + Format(": the specific force is %.4g m/s^2 (median), gravity is %.4g", force, gravity);
+      name + Format(" accelerometer: the specific force is %.4g m/s^2 (median), gravity is %.4g",
+                    force, gravity);
   if (IsNear(force, gravity)) return true;
   if (IsNear(force, 1.0)) {
     findings->Fail(what + ": it is in g", "multiply the accelerometer's columns by 9.80665");
@@ -251,7 +252,7 @@ std::optional<SpeedComparison> SpeedsAgainst(const CheckedCamera& camera,
 void CheckScale(const std::string& camera_name, const std::string& imu_name, double scale,
                 bool is_saturated, Findings* findings) {
   const std::string what = imu_name + Format(
-                                          ": the gyroscope turns %.3g times as fast as the "
+                                          " gyroscope: it turns %.3g times as fast as the "
                                           "board in %s",
                                           scale, camera_name.c_str());
   if (IsNear(scale, 180.0 / std::numbers::pi)) {
@@ -304,7 +305,7 @@ void CheckSpeeds(const std::vector<CheckedCamera>& cameras, const std::string& i
   }
   const double rate = MedianNorm(gyro);
   if (!is_compared && rate > kFastestHand) {
-    findings->Fail(imu_name + Format(": the gyroscope reads %.3g rad/s (median), faster than a "
+    findings->Fail(imu_name + Format(" gyroscope: it reads %.3g rad/s (median), faster than a "
                                      "hand turns: it may be in deg/s",
                                      rate),
                    kDegreesRemedy);

@@ -10,6 +10,8 @@ namespace calibrato {
 namespace {
 
 constexpr double kGapPeriods = 3.0;
+constexpr double kPause = 10.0;        // [s]
+constexpr double kManyMissing = 0.05;  // Of all that were due.
 constexpr double kLargeJitter = 0.2;   // Of a period.
 constexpr double kBurst = 0.5;         // Of the mean period.
 constexpr size_t kMinStamps = 20;      // To speak of how they are spread.
@@ -57,6 +59,7 @@ StreamTiming TimingOf(const std::vector<Time>& stamps) {
     sum += rest;
     sum_of_squares += rest * rest;
     timing.num_missing += static_cast<size_t>(multiple) - 1;
+    if (periods_s[k] > kPause) timing.num_missing_in_pauses += static_cast<size_t>(multiple) - 1;
     if (periods_s[k] < kBurst * mean_period_s) ++num_short;
     if (!(periods_s[k] > kGapPeriods * timing.median_period_s)) continue;
     ++timing.num_gaps;
@@ -112,7 +115,16 @@ std::vector<Finding> FindingsOnTiming(const std::string& name, const StreamTimin
 }
 
 std::vector<Finding> FindingsOnMissingImages(const std::string& name, const StreamTiming& timing) {
-  if (timing.num_gaps == 0) return {};
+  const size_t num_due = timing.num_stamps + timing.num_missing;
+  const bool are_many =
+      static_cast<double>(timing.num_missing) > kManyMissing * static_cast<double>(num_due);
+  if (timing.num_gaps == 0) {
+    if (!are_many || timing.num_stamps < kMinStamps) return {};
+    return {{Severity::kWarn,
+             name + Format(": about %zu of %zu images are missing, here and there",
+                           timing.num_missing, num_due),
+             "record to a faster disk, at a lower rate, or in grey"}};
+  }
   return {{Severity::kWarn,
            name + Format(": about %zu images are missing; the longest gap is %.2f s, after the "
                          "stamp %lld",

@@ -64,6 +64,28 @@ TEST(TimingOf, CountsWhatIsMissingInGaps) {
               HasSubstr("cam0: about 10 images are missing"));
 }
 
+TEST(TimingOf, CountsWhatIsMissingHereAndThere) {
+  const auto without_every = [](int nth) {
+    std::vector<Time> stamps;
+    for (int k = 0; k < 400; ++k) {
+      if (k % nth != 1) stamps.push_back(Time::FromNanoseconds(k * kPeriod));
+    }
+    return stamps;
+  };
+  const auto findings = FindingsOnMissingImages("cam0", TimingOf(without_every(4)));
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0].what, HasSubstr("cam0: about 100 of 400 images are missing"));
+  EXPECT_TRUE(FindingsOnMissingImages("cam0", TimingOf(without_every(50))).empty());
+}
+
+TEST(TimingOf, TellsWhatIsMissingInPauses) {
+  std::vector<Time> stamps = Even(400);
+  for (size_t k = 200; k < 400; ++k) stamps[k] = stamps[k] + Duration::FromSeconds(20.0);
+  const StreamTiming timing = TimingOf(stamps);
+  EXPECT_EQ(timing.num_missing, timing.num_missing_in_pauses);
+  EXPECT_EQ(timing.num_missing, 4000U);
+}
+
 // Ten at a time: 0.1 ms apart, then a pause.
 TEST(TimingOf, BurstsAreNamed) {
   std::vector<Time> stamps;

@@ -138,13 +138,30 @@ function expectedCard(expected) {
                    table(["parameter", "expected sigma", "enough", "verdict", "what to do"], rows)));
 }
 
+/** A line of steps with a break where more than three medians lie between two stamps. */
+function withBreaks(times, values) {
+  const steps = times.slice(1).map((time, i) => time - times[i]).sort((a, b) => a - b);
+  const longest = 3 * (steps[Math.floor(steps.length / 2)] ?? 0);
+  const x = [], y = [];
+  times.forEach((time, i) => {
+    if (i > 0 && time - times[i - 1] > longest) {
+      x.push(times[i - 1]);
+      y.push(null);
+    }
+    x.push(time);
+    y.push(values[i]);
+  });
+  return {x, y};
+}
+
 function visibilityCard(plots) {
   const build = () => {
     const cameras = list(plots.cameras).filter((camera) => list(camera.time_s).length > 0);
     if (cameras.length === 0) return "There are no images with stamps that were searched.";
     return {
       data: cameras.map((camera, i) => ({
-        type: "scatter", mode: "lines", name: camera.name, x: camera.time_s, y: camera.num_corners,
+        type: "scatter", mode: "lines", name: camera.name,
+        ...withBreaks(camera.time_s, camera.num_corners),
         line: {color: kPalette[i % kPalette.length], width: 1.2, shape: "hv"},
         hovertemplate: `${camera.name}, %{x:.2f} s: %{y} corners<extra></extra>`,
       })),
@@ -155,7 +172,7 @@ function visibilityCard(plots) {
     };
   };
   return wide(card("When the board was seen", "At 0 an image was taken, and the board was not found " +
-                       "in it.", plot(build)));
+                       "in it; where the line is broken there are no images.", plot(build)));
 }
 
 function sharpnessCard(plots) {

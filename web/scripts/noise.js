@@ -20,7 +20,8 @@ function figureText(sensor, key) {
 function noiseFigures(sensor, unit) {
   const axes = list(sensor.axes);
   const row = (name, key, of) => [
-    name, of, ...axes.map((one) => one[key] > 0 ? number(one[key], 4) : "does not show"),
+    name, of, ...axes.map((one) => one[key] > 0 ?
+        (one[`${key}_is_upper_bound`] ? "below " : "") + number(one[key], 4) : "does not show"),
   ];
   return table(["figure", "all axes", "x", "y", "z"], [
     row(`noise density [${unit}/√Hz]`, "noise_density", figureText(sensor, "noise_density")),
@@ -51,7 +52,9 @@ function allanCard(sensor, title, unit) {
     });
     const lowest = Math.min(...axes.flatMap((one) => one.deviation));
     const seen = (y) => y > lowest / 3 ? y : null;
-    line("white noise", "dash", (tau) => seen(sensor.noise_density / Math.sqrt(tau)));
+    if (!sensor.noise_density_is_upper_bound) {
+      line("white noise", "dash", (tau) => seen(sensor.noise_density / Math.sqrt(tau)));
+    }
     if (!sensor.random_walk_is_upper_bound) {
       line("random walk", "dot", (tau) => seen(sensor.random_walk * Math.sqrt(tau / 3)));
     }
