@@ -60,6 +60,24 @@ void BM_DetectNothing(benchmark::State& state) {
   }
 }
 
+// A wall of so many discs, with no board before it: each of them may be where one begins.
+void BM_DetectInAWallOfDiscs(benchmark::State& state) {
+  constexpr double kSpacing = 10.0;  // [px]
+  const auto side = static_cast<int>(kSpacing * std::sqrt(static_cast<double>(state.range(0))));
+  GreyImage image{{side, side}, {}};
+  for (int v = 0; v < side; ++v) {
+    for (int u = 0; u < side; ++u) {
+      const double du = std::remainder(u + 0.02 * v, kSpacing);
+      const double dv = std::remainder(v - 0.02 * u, kSpacing);
+      image.pixels.push_back(du * du + dv * dv < 9.0 ? 40 : 220);
+    }
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(DetectBoard(image, CircleGrid{7, 4, 0.03, true}));
+  }
+  state.SetComplexityN(state.range(0));
+}
+
 BENCHMARK_CAPTURE(BM_Detect, Checkerboard, Checkerboard{6, 7, 0.06, 0.06})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(BM_Detect, AprilGrid, AprilGrid{6, 6, 0.088, 0.3})->Unit(benchmark::kMillisecond);
@@ -70,6 +88,11 @@ BENCHMARK_CAPTURE(BM_Detect, AsymmetricCircleGrid, CircleGrid{11, 4, 0.03, true}
 BENCHMARK_CAPTURE(BM_Detect, Charuco, Charuco{6, 8, 0.06, 0.045, "DICT_5X5_100"})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(BM_DetectNothing)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_DetectInAWallOfDiscs)
+    ->RangeMultiplier(2)
+    ->Range(1 << 10, 1 << 14)
+    ->Complexity()
+    ->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace calibrato

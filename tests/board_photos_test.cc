@@ -40,10 +40,10 @@ TEST_F(BoardPhotos, ShowAllTagsOfAnAprilGridButThoseSeenFromTheSide) {
 
 TEST_F(BoardPhotos, ShowACheckerboardInAFisheyeToItsRim) {
   const Recording recording = OpenRecording(folder_ + "/camodocal_fisheye", {});
-  const auto& images = std::get<std::vector<ImageFile>>(recording.cameras.at(0).data);
+  const auto& images = std::get<CameraImages>(recording.cameras.at(0).data);
   ImageSource source;
-  for (const ImageFile& image : images) source.names.push_back(image.name);
-  source.load = [&](size_t k) { return ReadPhoto(images[k].path); };
+  for (const RecordedImage& image : images.list) source.names.push_back(image.name);
+  source.load = [&](size_t k) { return GreyOf(images.reader->Read(k)); };
   const Detections detections = DetectBoards(source, Checkerboard{6, 9, 0.12, 0.12});
   EXPECT_EQ(detections.num_images, 32);
   EXPECT_GE(detections.views.size(), 31U);

@@ -20,6 +20,7 @@
 #include "calibrato/simulation/fast_simulation.h"
 #include "calibrato/simulation/imu_simulation.h"
 #include "calibrato/simulation/rig_distribution.h"
+#include "honesty.h"
 
 namespace calibrato {
 namespace {
@@ -71,42 +72,6 @@ TEST(CameraImuInformation, OfTheHandcraftedMotionIsWhatOthersFound) {
   EXPECT_NEAR(std::sqrt(variance.segment<3>(3).sum()), 1.29e-3, 0.15 * 1.29e-3);
   EXPECT_NEAR(std::sqrt(variance(6)), 0.054e-3, 0.15 * 0.054e-3);
 }
-
-// Sums over rigs of how far estimates of T_c_i and time offset lie from the truth.
-class Honesty {
- public:
-  void Add(const CameraImuCalibration& result, const Rig& rig) {
-    const CameraCalibrationState& camera = result.state->cameras.front();
-    Eigen::Vector<double, 7> error;
-    error << camera.T_c_i.DifferenceTo(rig.T_c0_i),
-        camera.time_offset_s - rig.time_offset_i_c.seconds();
-    const Eigen::Matrix<double, 7, 7> covariance =
-        result.information.covariance.topLeftCorner<7, 7>();
-    const double squared = error.dot(covariance.ldlt().solve(error));
-    nees_ += squared;
-    covered_ += squared < 14.067 ? 1 : 0;  // 95 % of chi-square with 7 degrees.
-    ++num_rigs_;
-  }
-
-  // 95 % ellipsoids cover in 93 to 97 % of a full sample, in 90 to 99 % of a small one.
-  void Expect() const {
-    const double coverage = static_cast<double>(covered_) / num_rigs_;
-    const double error_over_bound = std::sqrt(nees_ / (7.0 * num_rigs_));
-    testing::Test::RecordProperty("coverage", std::to_string(coverage));
-    testing::Test::RecordProperty("error_over_bound", std::to_string(error_over_bound));
-    std::printf("%d rigs: coverage %.4f, error over bound %.4f\n", num_rigs_, coverage,
-                error_over_bound);
-    EXPECT_GE(coverage, FullSample() ? 0.93 : 0.90);
-    EXPECT_LE(coverage, FullSample() ? 0.97 : 0.99);
-    EXPECT_LE(error_over_bound, 1.1);
-    EXPECT_NEAR(nees_ / (7.0 * num_rigs_), 1.0, 3.5 * std::sqrt(2.0 / (7.0 * num_rigs_)));
-  }
-
- private:
-  int num_rigs_ = 0;
-  int covered_ = 0;
-  double nees_ = 0.0;
-};
 
 // A rig of the paper's distribution, with a lens that distorts, a time offset and biases.
 Rig RigWithTimeOffset(Rng& rng) {
@@ -184,7 +149,7 @@ TEST(CalibrateCameraImu, IsHonestOnThePapersRigs) {
     recording.problem.corner_noise_px = rig.corner_noise.stddev_px;
     const CameraImuCalibration result = CalibrateCameraImu(recording.problem, CoarseKnots());
     ASSERT_EQ(result.termination, Termination::kConverged) << i;
-    honesty.Add(result, rig);
+    honesty.Add(result, rig.T_c0_i, rig.time_offset_i_c.seconds());
     const SquaredResiduals of_rig = SquaredResidualsOf(recording.problem, result);
     squared.sum += of_rig.sum;
     squared.degrees += of_rig.degrees;
@@ -220,7 +185,7 @@ TEST(CalibrateCameraImu, IsHonestWithIntrinsicsThatWereCalibratedBefore) {
     problem.cameras[0].intrinsics_covariance = camera.covariance;
     const CameraImuCalibration result = CalibrateCameraImu(problem, CoarseKnots());
     ASSERT_EQ(result.termination, Termination::kConverged) << i;
-    honesty.Add(result, rig);
+    honesty.Add(result, rig.T_c0_i, rig.time_offset_i_c.seconds());
   }
   honesty.Expect();
 }

@@ -95,8 +95,9 @@ TEST_P(DetectionAccuracy, IsUnbiasedToAFiftiethOfAPixel) {
   ASSERT_GT(num_corners, 300);
   EXPECT_GE(num_found, 0.9 * num_tried);
   EXPECT_LE(mean.cwiseAbs().maxCoeff(), 0.02);
-  EXPECT_LE(deviation.maxCoeff(), 0.05);
-  EXPECT_LE(worst, 0.5);
+  // Asked for are 0.05 px; docs/detection.md has what is achieved.
+  EXPECT_LE(deviation.maxCoeff(), 0.01);
+  EXPECT_LE(worst, 0.2);
 }
 
 // The symmetric grid of circles is left out: it may be numbered from its other side.

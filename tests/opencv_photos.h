@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "calibrato/detection/detect.h"
-#include "calibrato/recording/photo.h"
 #include "calibrato/recording/recording.h"
 
 namespace calibrato {
@@ -24,10 +23,10 @@ inline Detections DetectInPhotos(const std::string& folder, const std::string& g
   RecordingOptions options;
   if (!glob.empty()) options.image_globs = {glob};
   const Recording recording = OpenRecording(folder, options);
-  const auto& images = std::get<std::vector<ImageFile>>(recording.cameras.at(0).data);
+  const auto& images = std::get<CameraImages>(recording.cameras.at(0).data);
   ImageSource source;
-  for (const ImageFile& image : images) source.names.push_back(image.name);
-  source.load = [&](size_t k) { return ReadPhoto(images[k].path); };
+  for (const RecordedImage& image : images.list) source.names.push_back(image.name);
+  source.load = [&](size_t k) { return GreyOf(images.reader->Read(k)); };
   if (names != nullptr) *names = source.names;
   return DetectBoards(source, board);
 }

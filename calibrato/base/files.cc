@@ -307,6 +307,11 @@ void OutputFolder::Add(const std::string& name, std::string content) {
   files_[name] = std::move(content);
 }
 
+void OutputFolder::Remove(const std::string& name) {
+  assert(StaysInside(name));
+  removed_.insert(name);
+}
+
 void OutputFolder::Commit() {
   MadeFolders folders;
   folders.Make(path_);
@@ -316,6 +321,13 @@ void OutputFolder::Commit() {
     const fs::path path = fs::path(path_) / name;
     folders.Make(path.parent_path());
     written.emplace_back(path.string(), content);
+  }
+  // Before the new files have their names: nothing old may stand beside them.
+  for (const std::string& name : removed_) {
+    const fs::path path = fs::path(path_) / name;
+    if (!files_.contains(name) && unlink(path.c_str()) != 0 && errno != ENOENT) {
+      FailFile("cannot remove file", path, errno);
+    }
   }
   for (TemporaryFile& file : written) file.Rename();
   folders.Keep();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,9 +35,12 @@ class OutputFolder {
   explicit OutputFolder(std::string path);
 
   void Add(const std::string& name, std::string content);
+  /// Commit() takes away the file of that name, which an earlier run may have left: what this run
+  /// does not write must not be taken for its result.
+  void Remove(const std::string& name);
   /// Makes the folder and writes the files. An existing folder is kept: only these names are
-  /// replaced. If any temporary file can't be written (disk full), all are removed, the folder as
-  /// well if this call made it. @throws InputError
+  /// replaced or taken away. If any temporary file can't be written (disk full), all are removed,
+  /// the folder as well if this call made it. @throws InputError
   void Commit();
 
   const std::string& path() const { return path_; }
@@ -44,6 +48,7 @@ class OutputFolder {
  private:
   std::string path_;
   std::map<std::string, std::string> files_;
+  std::set<std::string> removed_;
 };
 
 }  // namespace calibrato

@@ -199,6 +199,19 @@ TEST_F(OutputFolderTest, ReplacesOnlyItsOwnNamesInAnExistingFolder) {
   EXPECT_EQ(ReadFile(Path("policy/y")), "2");
 }
 
+TEST_F(OutputFolderTest, TakesAwayWhatAnEarlierRunLeft) {
+  Write("kept", "kept");
+  Write("stale", "old");
+  Write("x", "old");
+  OutputFolder out(folder_);
+  for (const char* name : {"stale", "x", "never-there"}) out.Remove(name);
+  out.Add("x", "1");
+  EXPECT_EQ(Tree(), "kept stale x");
+  out.Commit();
+  EXPECT_EQ(Tree(), "kept x");
+  EXPECT_EQ(ReadFile(Path("x")), "1");
+}
+
 TEST_F(OutputFolderTest, TakesATrailingSlash) {
   OutputFolder out(Path("a/"));
   out.Add("x", "1");

@@ -36,6 +36,11 @@ std::string QuoteText(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+std::string ShortenText(const std::string& text) {
+  constexpr size_t kMaxLength = 40;
+  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
+}
+
 std::string FormatNumber(double value) {
   if (!std::isfinite(value)) return "null";
   // Readers of JSON take "-0" for the whole number, which has no sign.

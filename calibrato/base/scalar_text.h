@@ -18,4 +18,7 @@ std::optional<double> ParseDecimal(std::string_view text);
 /// may have such) are replaced by U+FFFD.
 std::string QuoteText(const std::string& text);
 
+/// The first 40 bytes and "...", of a longer text: for messages.
+std::string ShortenText(const std::string& text);
+
 }  // namespace calibrato

@@ -8,35 +8,14 @@
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/nearest_name.h"
+#include "calibrato/base/required_keys.h"
 #include "calibrato/base/scalar_text.h"
 
 namespace calibrato {
 namespace {
 
-std::string Shorten(const std::string& text) {
-  constexpr size_t kMaxLength = 40;
-  return text.size() <= kMaxLength ? text : text.substr(0, kMaxLength) + "...";
-}
-
 std::string Count(size_t count, const std::string& noun) {
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
-std::vector<std::string> Names(const Value::Members& members) {
-  std::vector<std::string> names;
-  names.reserve(members.size());
-  for (const auto& [name, value] : members) names.push_back(name);
-  return names;
-}
-
-std::string Join(const std::vector<std::string>& names) {
-  constexpr size_t kMaxNames = 12;
-  std::string list;
-  for (size_t i = 0; i < std::min(names.size(), kMaxNames); ++i) {
-    if (i > 0) list += ", ";
-    list += Shorten(names[i]);
-  }
-  return names.size() > kMaxNames ? list + ", ..." : list;
 }
 
 }  // namespace
@@ -74,13 +53,7 @@ const Value& Value::At(std::string_view key) const {
   for (const auto& [name, value] : all) {
     if (name == key) return value;
   }
-  const std::string name(key);
-  const std::vector<std::string> present = Names(all);
-  const std::optional<std::string> nearest = NearestName(key, present);
-  Fail("missing key " + name,
-       present.empty() ? "there are no keys here" : "the keys here are " + Join(present),
-       nearest ? "did you mean " + name + " where " + *nearest + " stands?"
-               : "add '" + name + ": ...'");
+  FailMissingKey(*this, std::string(key), KeysOf(*this));
 }
 
 const Value* Value::Find(std::string_view key) const {
@@ -256,6 +229,7 @@ void Value::FailType(const std::string& expected, const std::string& remedy) con
 
 std::string Value::Found() const {
   struct Describe {
+    const Value& described;
     std::string operator()(std::monostate) const { return "nothing"; }
     std::string operator()(bool value) const { return value ? "true" : "false"; }
     std::string operator()(int64_t value) const { return std::to_string(value); }
@@ -265,19 +239,19 @@ std::string Value::Found() const {
       return FormatNumber(value);
     }
     std::string operator()(const std::string& value) const {
-      return std::string("the text \"").append(Shorten(value)).append("\"");
+      return std::string("the text \"").append(ShortenText(value)).append("\"");
     }
     std::string operator()(const Scalar& value) const {
-      return std::string("'").append(Shorten(value.text)).append("'");
+      return std::string("'").append(ShortenText(value.text)).append("'");
     }
     std::string operator()(const Elements& value) const {
       return "an array of " + Count(value.size(), "element");
     }
     std::string operator()(const Members& value) const {
-      return value.empty() ? "an empty mapping" : "a mapping with " + Join(Names(value));
+      return value.empty() ? "an empty mapping" : "a mapping with " + KeysInWords(described);
     }
   };
-  return std::visit(Describe(), data_);
+  return std::visit(Describe{*this}, data_);
 }
 
 }  // namespace calibrato

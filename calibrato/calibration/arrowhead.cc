@@ -128,23 +128,34 @@ Eigen::VectorXd ArrowheadCholesky::Step() const {
   return step;
 }
 
-Eigen::MatrixXd ArrowheadCholesky::ExtendedFromBorder(const Eigen::MatrixXd& border) const {
+Eigen::MatrixXd ArrowheadCholesky::Solve(const Eigen::MatrixXd& right_sides) const {
+  assert(right_sides.rows() == factor_.num_unknowns());
   const int b = factor_.block_size_;
   const int m = factor_.border_size_;
   const int n = factor_.num_blocks_;
-  assert(border.rows() == m);
-  Eigen::MatrixXd extended(factor_.num_unknowns(), border.cols());
-  extended.bottomRows(m) = border;
+  Eigen::MatrixXd solution = right_sides;
+  auto border = solution.bottomRows(m);
+  for (int c = 0; c < n; ++c) {
+    const auto panel = factor_.Panel(c);
+    auto x = solution.middleRows(c * b, b);
+    panel.topRows(b).triangularView<Eigen::Lower>().solveInPlace(x);
+    if (c + 1 < n) solution.middleRows((c + 1) * b, b).noalias() -= panel.middleRows(b, b) * x;
+    border.noalias() -= panel.middleRows(2 * b, m) * x;
+  }
+  if (m > 0) {
+    corner_factor_.triangularView<Eigen::Lower>().solveInPlace(border);
+    corner_factor_.transpose().triangularView<Eigen::Upper>().solveInPlace(border);
+  }
   for (int c = n - 1; c >= 0; --c) {
     const auto panel = factor_.Panel(c);
-    auto x = extended.middleRows(c * b, b);
-    x.noalias() = -(panel.middleRows(2 * b, m).transpose() * border);
+    auto x = solution.middleRows(c * b, b);
+    x.noalias() -= panel.middleRows(2 * b, m).transpose() * border;
     if (c + 1 < n) {
-      x.noalias() -= panel.middleRows(b, b).transpose() * extended.middleRows((c + 1) * b, b);
+      x.noalias() -= panel.middleRows(b, b).transpose() * solution.middleRows((c + 1) * b, b);
     }
     panel.topRows(b).transpose().triangularView<Eigen::Upper>().solveInPlace(x);
   }
-  return extended;
+  return solution;
 }
 
 Eigen::MatrixXd ArrowheadCholesky::BorderInformation() const {

@@ -70,16 +70,12 @@ class ArrowheadCholesky {
   /// x = -(H + damping diag H)^-1 g.
   [[nodiscard]] Eigen::VectorXd Step() const;
 
+  /// (H + damping diag H)^-1 b for each column b: blocks in order, then the border.
+  [[nodiscard]] Eigen::MatrixXd Solve(const Eigen::MatrixXd& right_sides) const;
+
   /// What the data know about the border where the blocks are unknown: the Schur complement
   /// C - sum of E D^-1 E', whose inverse is the marginal covariance of the border.
   [[nodiscard]] Eigen::MatrixXd BorderInformation() const;
-
-  /// The blocks' unknowns that belong to a border's: x_c = -D^-1 E' y below which H [x; y] has only
-  /// border rows, (C - E D^-1 E') y. Of y = columns of the border's covariance, these are the
-  /// columns of H^-1.
-  /// @param border  y, one or more columns of border_size rows.
-  /// @return [x_c; y], of num_unknowns rows.
-  [[nodiscard]] Eigen::MatrixXd ExtendedFromBorder(const Eigen::MatrixXd& border) const;
 
   /// log det of the matrix.
   [[nodiscard]] double LogDeterminant() const;

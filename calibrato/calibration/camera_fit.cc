@@ -6,6 +6,7 @@
 
 #include "calibrato/base/parallel.h"
 #include "calibrato/calibration/bundle_adjustment.h"
+#include "calibrato/calibration/information.h"
 #include "calibrato/calibration/start_values.h"
 #include "calibrato/calibration/view_fit.h"
 
@@ -42,6 +43,16 @@ bool SameCorners(const std::vector<ViewInliers>& a, const std::vector<ViewInlier
   });
 }
 
+int NumUsed(const std::vector<ViewInliers>& views) {
+  return static_cast<int>(std::count_if(views.begin(), views.end(),
+                                        [](const ViewInliers& view) { return view.count() > 0; }));
+}
+
+// Too few views fit: no camera, but what became of each view.
+CameraFit Failed(std::vector<ViewInliers> views) {
+  return {Termination::kNoStart, std::nullopt, std::move(views), 0.0, std::nullopt};
+}
+
 // Adjusts the camera to the corners that take part.
 void Adjust(const CameraProblem& problem, int max_iterations, double loss_scale_px,
             CameraFit* fit) {
@@ -69,22 +80,79 @@ void Adjust(const CameraProblem& problem, int max_iterations, double loss_scale_
   }
 }
 
-}  // namespace
-
-int CameraFit::num_used_views() const {
-  return static_cast<int>(std::count_if(views.begin(), views.end(),
-                                        [](const ViewInliers& view) { return view.count() > 0; }));
+// What is to be known of a fit in which nothing is held at its estimate.
+FreeFit DescribedFreeFit(const CameraProblem& problem, const CameraFit& fit) {
+  FreeFit described{fit.termination, {}};
+  std::vector<BoardView> used;
+  std::vector<Rigid3> T_c_g;
+  double num_coordinates = 0.0;
+  for (size_t v = 0; v < problem.views.size(); ++v) {
+    if (fit.views[v].count() == 0) continue;
+    used.push_back(InliersOf(problem.views[v], fit.views[v]));
+    T_c_g.push_back(fit.views[v].T_c_g);
+    num_coordinates += 2.0 * fit.views[v].count();
+  }
+  const auto num_unknowns =
+      static_cast<double>(std::count(problem.fixed.begin(), problem.fixed.end(), false) +
+                          6 * static_cast<std::ptrdiff_t>(used.size()));
+  if (!(num_coordinates > num_unknowns)) return described;
+  const auto covariance = CovarianceFromInformation(
+      CameraInformation(*fit.model, T_c_g, used, problem.fixed), problem.fixed);
+  if (!covariance) return described;
+  const double variance_px2 = fit.squared_error_px2 / (num_coordinates - num_unknowns);
+  described.sigmas = (variance_px2 * covariance->diagonal()).cwiseSqrt();
+  return described;
 }
 
+// Once with these parameters free, then with them held at what came of it.
+CameraFit FitHeldAtEstimate(CameraProblem problem, const std::vector<bool>& at_estimate,
+                            int max_iterations) {
+  const std::vector<bool> fixed = problem.fixed;
+  for (size_t i = 0; i < fixed.size(); ++i) {
+    if (at_estimate[i]) problem.fixed[i] = false;
+  }
+  const CameraFit free = FitCamera(problem, max_iterations);
+  if (!free.model) return free;
+  const FreeFit free_fit = DescribedFreeFit(problem, free);
+  const Eigen::VectorXd parameters = free.model->parameters();
+  for (size_t i = 0; i < fixed.size(); ++i) {
+    const auto index = static_cast<Eigen::Index>(i);
+    if (at_estimate[i]) problem.known(index) = parameters(index);
+  }
+  problem.fixed = fixed;
+  CameraFit held = FitCamera(problem, max_iterations);
+  held.free_fit = free_fit;
+  return held;
+}
+
+void AddViewsThatDidNotFit(const CameraProblem& problem, const CameraFit& fit,
+                           CameraCalibration* result) {
+  for (size_t v = 0; v < fit.views.size(); ++v) {
+    if (fit.views[v].count() > 0) continue;
+    const BoardView& view = problem.views[v];
+    result->rejected_views.push_back({view.name, fit.views[v].reason,
+                                      static_cast<int>(view.num_corners()),
+                                      std::numeric_limits<double>::quiet_NaN()});
+  }
+}
+
+}  // namespace
+
+int CameraFit::num_used_views() const { return NumUsed(views); }
+
 CameraFit FitCamera(const CameraProblem& problem, int max_iterations) {
+  const std::vector<bool> at_estimate = HeldAtTheirEstimate(problem);
+  if (std::find(at_estimate.begin(), at_estimate.end(), true) != at_estimate.end()) {
+    return FitHeldAtEstimate(problem, at_estimate, max_iterations);
+  }
   CameraFit fit;
   const std::vector<BoardView>& views = problem.views;
   if (views.size() < static_cast<size_t>(kMinViews)) return fit;
   const auto start =
       FindStartValues(problem.model, problem.resolution, views, problem.known, problem.fixed);
   if (!start) return fit;
+  if (NumUsed(start->views) < kMinViews) return Failed(start->views);
   fit.views = start->views;
-  if (fit.num_used_views() < kMinViews) return {};
   fit.model = start->model;
 
   if (problem.reject_outliers) {
@@ -96,29 +164,30 @@ CameraFit FitCamera(const CameraProblem& problem, int max_iterations) {
     if (*std::max_element(errors.begin(), errors.end()) > gross * gross) {
       Adjust(problem, 30, 3.0 * noise, &fit);
       fit.views = Judged(*fit.model, views, fit.views, gross);
-      if (fit.num_used_views() < kMinViews) return {};
+      if (fit.num_used_views() < kMinViews) return Failed(fit.views);
     }
   }
-  for (int round = 0; round < kMaxRounds; ++round) {
+  for (int round = 1;; ++round) {
     Adjust(problem, max_iterations, 0.0, &fit);
-    if (!problem.reject_outliers) break;
+    // The last round's judgement would not be adjusted to.
+    if (!problem.reject_outliers || round == kMaxRounds) return fit;
     const double threshold = OutlierThreshold(SquaredErrors(*fit.model, views, fit.views));
     std::vector<ViewInliers> judged = Judged(*fit.model, views, fit.views, threshold);
-    const bool settled = SameCorners(judged, fit.views);
-    const auto num_used = std::count_if(judged.begin(), judged.end(),
-                                        [](const ViewInliers& view) { return view.count() > 0; });
-    if (settled || num_used < kMinViews) break;
+    if (SameCorners(judged, fit.views)) return fit;
+    if (NumUsed(judged) < kMinViews) return Failed(std::move(judged));
     fit.views = std::move(judged);
   }
-  return fit;
 }
 
 CameraCalibration DescribedFit(const CameraProblem& problem, const CameraFit& fit) {
   CameraCalibration result;
   result.termination = fit.termination;
-  result.coverage = CoverageOf(problem.views, problem.resolution);
-  if (!fit.model) return result;
+  if (!fit.model) {
+    AddViewsThatDidNotFit(problem, fit, &result);
+    return result;
+  }
   result.model = fit.model;
+  result.free_fit = fit.free_fit;
   double inlier_sum = 0.0;
   double all_sum = 0.0;
   int num_all = 0;
@@ -164,6 +233,7 @@ CameraCalibration DescribedFit(const CameraProblem& problem, const CameraFit& fi
                                        std::sqrt(view_sum / num_projected)});
     }
   }
+  result.coverage = CoverageOf(result.used_views, problem.resolution);
   result.reprojection_rms_px = std::sqrt(inlier_sum / result.num_corners);
   result.reprojection_rms_all_px = std::sqrt(all_sum / num_all);
   return result;

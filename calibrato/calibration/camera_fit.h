@@ -14,9 +14,12 @@ namespace calibrato {
 /// One camera fitted to its views: the estimate without what is said of it.
 struct CameraFit {
   Termination termination = Termination::kNoStart;
-  std::optional<CameraModel> model;  ///< None without start values.
-  std::vector<ViewInliers> views;    ///< One a view of the problem, with poses T_c_g.
-  double squared_error_px2 = 0.0;    ///< Of the corners that take part.
+  std::optional<CameraModel> model;  ///< None where fewer than kMinViews fit one lens.
+  /// One a view of the problem, with poses T_c_g. Without a model: which of them fit one lens, too
+  /// few, and why the others do not; empty where no lens was found at all.
+  std::vector<ViewInliers> views;
+  double squared_error_px2 = 0.0;   ///< Of the corners that take part.
+  std::optional<FreeFit> free_fit;  ///< As in CameraCalibration.
 
   [[nodiscard]] int num_used_views() const;
 };
@@ -27,7 +30,8 @@ struct CameraFit {
 [[nodiscard]] CameraFit FitCamera(const CameraProblem& problem, int max_iterations);
 
 /// What is known of a camera once it is fitted: model, used views, residuals, what was left out,
-/// and coverage; not the noise, the covariance, nor what follows from it.
+/// and coverage; not the noise, the covariance, nor what follows from it. Without a model only what
+/// was left out.
 [[nodiscard]] CameraCalibration DescribedFit(const CameraProblem& problem, const CameraFit& fit);
 
 }  // namespace calibrato

@@ -7,7 +7,6 @@
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/calibration/arrowhead.h"
-#include "calibrato/calibration/camera_imu_start.h"
 #include "calibrato/calibration/knot_spacing.h"
 #include "calibrato/calibration/outliers.h"
 
@@ -21,13 +20,17 @@ using Eigen::VectorXd;
 // the estimate lies within a hundredth of the standard deviation of any combination of unknowns:
 // the decrease is the squared distance to the minimum in that measure.
 constexpr double kConverged = 1e-4;
+// Squared distance of the calibration alone to the linearised minimum: a twentieth of the standard
+// deviation of any combination of its parameters.
+constexpr double kSettled = 2.5e-3;
 // As a share of the cost: enough to look for outliers.
 constexpr double kNearlyConverged = 1e-3;
 // Gauss-Newton until a step fails: diagonals of H are larger than its eigenvalues of slow motion by
 // many orders of magnitude, so that even a little damping slows it down.
 constexpr double kLeastDamping = 1e-10;
 constexpr double kLargestDamping = 1e8;
-// A step that is damped more promises little wherever it is taken.
+// Where the normal equations determine nothing without damping, a step that is damped more than
+// this promises little wherever it is taken.
 constexpr double kNewtonDamping = 1e-3;
 constexpr int kOutlierRounds = 4;
 constexpr int kNoiseRounds = 4;
@@ -131,7 +134,9 @@ class Solver {
   const ArrowheadSystem& system() const { return system_; }
   int num_iterations() const { return num_iterations_; }
 
-  // Steps until the next one promises less than `tolerance`, or `share` of the cost.
+  // Steps until the next one promises less than `tolerance`, and without damping would hardly move
+  // the calibration either; or, as long as it is hardly damped, less than `share` of the cost, if
+  // that is given.
   Termination Solve(const CameraImuMeasurements& measurements, const CameraImuWeights& weights,
                     double tolerance, double share, int max_iterations) {
     auto cost = Linearise(problem_, state_, layout_, measurements, weights, &system_);
@@ -144,7 +149,8 @@ class Solver {
       if (const auto factor = ArrowheadCholesky::Factor(system_, damping)) {
         const VectorXd step = factor->Step();
         const double promised = PromisedDecrease(step, damping);
-        if (damping < kNewtonDamping && promised < std::max(tolerance, share * *cost)) {
+        if (promised < std::max(tolerance, share * *cost) &&
+            (share > 0.0 ? damping < kNewtonDamping : IsAtMinimum(damping, tolerance))) {
           return Termination::kConverged;
         }
         if (auto next = std::isfinite(promised) ? Perturbed(state_, layout_, step) : std::nullopt) {
@@ -166,13 +172,30 @@ class Solver {
       }
       damping = std::max(kLeastDamping, damping * growth);
       growth *= 2.0;
-      // Not even a tiny step along the gradient helps: this is the minimum to within rounding.
-      if (damping > kLargestDamping) return Termination::kConverged;
+      // Not even a tiny step along the gradient helps: the minimum to within rounding, or else a
+      // place where the linearised problem promises what can't be had.
+      if (damping > kLargestDamping) {
+        return IsAtMinimum(damping, tolerance) ? Termination::kConverged
+                                               : Termination::kNoStepHelps;
+      }
     }
     return Termination::kIterationLimit;
   }
 
  private:
+  // Whether there is nothing to gain without damping either, which makes steps, and what they
+  // promise, small anywhere. What the trajectory does where nothing was measured (in a gap) does
+  // not count: there the linearised problem promises what can't be had. The calibration does.
+  bool IsAtMinimum(double damping, double tolerance) const {
+    if (damping == 0.0) return true;
+    const auto factor = ArrowheadCholesky::Factor(system_, 0.0);
+    if (!factor) return damping < kNewtonDamping;
+    const VectorXd step = factor->Step();
+    if (PromisedDecrease(step, 0.0) < tolerance) return true;
+    const VectorXd of_border = step.tail(layout_.border_size);
+    return of_border.dot(factor->BorderInformation() * of_border) < kSettled;
+  }
+
   // With (H + damping D) x = -g the linearised cost falls by -g x + damping x' D x.
   double PromisedDecrease(const VectorXd& step, double damping) const {
     return -system_.Gradient().dot(step) +
@@ -418,8 +441,12 @@ CameraImuCalibration CalibrateCameraImu(const CameraImuProblem& problem,
   CameraImuCalibration result;
   result.knot_spacing_s =
       options.knot_spacing_s.value_or(KnotSpacingFor(problem.imus.front().stream));
-  auto start = FindCameraImuStart(problem, options, result.knot_spacing_s);
-  if (!start) return result;
+  auto found = FindCameraImuStart(problem, options, result.knot_spacing_s);
+  if (const auto* none = std::get_if<CameraImuNoStart>(&found)) {
+    result.no_start = *none;
+    return result;
+  }
+  auto* start = std::get_if<CameraImuStart>(&found);
   result.knot_spacing_s = start->state.T_g_i.spacing_s();
   result.weights = WeightsOf(problem, problem.corner_noise_px.value_or(start->corner_noise_px));
 

@@ -8,6 +8,7 @@
 #include "calibrato/calibration/camera_imu_linearisation.h"
 #include "calibrato/calibration/camera_imu_measurements.h"
 #include "calibrato/calibration/camera_imu_problem.h"
+#include "calibrato/calibration/camera_imu_start.h"
 #include "calibrato/calibration/camera_imu_state.h"
 #include "calibrato/calibration/information.h"
 #include "calibrato/calibration/termination.h"
@@ -29,7 +30,8 @@ struct CameraImuInformation {
 
 struct CameraImuCalibration {
   Termination termination = Termination::kNoStart;
-  std::optional<CameraImuState> state;  ///< None without start values.
+  std::optional<CameraImuState> state;       ///< None without start values ...
+  std::optional<CameraImuNoStart> no_start;  ///< ... and then why, with kNoStart.
   int num_iterations = 0;
   double knot_spacing_s = 0.0;
   /// With check_knot_spacing, where both solves converge: the largest change of an entry of the

@@ -10,6 +10,8 @@
 #include "calibrato/base/full_sample_for_test.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/parallel.h"
+#include "calibrato/calibration/arrowhead.h"
+#include "calibrato/calibration/camera_imu_layout.h"
 #include "calibrato/calibration/synthetic_camera_imu_for_test.h"
 
 namespace calibrato {
@@ -415,6 +417,88 @@ TEST(CalibrateCameraImu, SaysWhatTheMotionDoesNotTell) {
     // Without rotation no translation between the sensors can be told.
     EXPECT_GT(result.information.covariance.diagonal().segment<3>(3).cwiseSqrt().maxCoeff(), 0.02);
   }
+}
+
+// A weak motion, whose solves are damped on their way: what a damped step promises is small
+// anywhere, and says nothing of how far the minimum is.
+TEST(CalibrateCameraImu, IsConvergedOnlyWhereNothingIsLeftToGain) {
+  int num_converged = 0;
+  for (const uint64_t seed : {14, 19}) {
+    SyntheticCameraImu truth;
+    truth.duration_s = 3.0;
+    truth.rotation = 0.04;
+    truth.translation = 0.2;
+    truth.corner_noise_px = 0.6;
+    truth.camera_rate_hz = 10.0;
+    truth.imu_noise.gyro_noise_density *= 40.0;
+    truth.imu_noise.accel_noise_density *= 40.0;
+    Rng rng(seed);
+    CameraImuProblem problem = truth.Problem(rng);
+    problem.cameras[0].intrinsics = IntrinsicsKnowledge::kUnknown;
+    CameraImuOptions options = Spacing(0.1);
+    options.max_iterations = 1000;
+    const CameraImuCalibration result = CalibrateCameraImu(problem, options);
+    if (result.termination != Termination::kConverged) continue;
+    ++num_converged;
+    const CameraImuLayout layout(problem, result.state->T_g_i.order());
+    ArrowheadSystem system(result.state->num_blocks(), layout.block_size, layout.border_size);
+    ASSERT_TRUE(Linearise(problem, *result.state, layout,
+                          MeasurementsOf(problem, *result.state, result.inliers), result.weights,
+                          &system));
+    const auto factor = ArrowheadCholesky::Factor(system, 0.0);
+    ASSERT_TRUE(factor.has_value());
+    // The calibration's squared distance to the minimum in standard deviations.
+    const VectorXd step = factor->Step().tail(layout.border_size);
+    EXPECT_LT(step.dot(factor->BorderInformation() * step), 2.6e-3) << seed;
+  }
+  EXPECT_GE(num_converged, 2);
+}
+
+TEST(CalibrateCameraImu, SaysWhyThereIsNoStart) {
+  using Reason = CameraImuNoStart::Reason;
+  SyntheticCameraImu truth;
+  truth.duration_s = 6.0;
+  truth.T_c_i.push_back(truth.T_c_i[0]);
+  truth.time_offset_s.push_back(0.0);
+  Rng rng(13);
+  const CameraImuProblem good = truth.Problem(rng);
+  const auto expect = [](const CameraImuProblem& problem, Reason reason, size_t sensor) {
+    const CameraImuCalibration result = CalibrateCameraImu(problem, Spacing(0.1));
+    EXPECT_EQ(result.termination, Termination::kNoStart);
+    ASSERT_TRUE(result.no_start.has_value());
+    EXPECT_EQ(result.no_start->reason, reason);
+    EXPECT_EQ(result.no_start->sensor, sensor);
+  };
+  CameraImuProblem sparse = good;
+  std::vector<BoardView>& views = sparse.cameras[1].views;
+  for (size_t v = views.size(); v-- > 0;) {
+    if (v % 12 != 0) views.erase(views.begin() + static_cast<std::ptrdiff_t>(v));
+  }
+  expect(sparse, Reason::kViewsFarApart, 1);
+  CameraImuProblem apart = good;
+  for (BoardView& view : apart.cameras[1].views) {
+    view.stamp = view.stamp + Duration::FromSeconds(1000.0);
+  }
+  expect(apart, Reason::kNoSharedTime, 1);
+  CameraImuProblem few = good;
+  few.cameras[0].views.resize(4);
+  expect(few, Reason::kNoBoardPoses, 0);
+  CameraImuProblem other = good;
+  other.imus.push_back(other.imus[0]);
+  for (auto* samples : {&other.imus[1].stream.gyro, &other.imus[1].stream.accel}) {
+    for (VectorSample& sample : *samples) {
+      sample.stamp = sample.stamp + Duration::FromSeconds(1000.0);
+    }
+  }
+  expect(other, Reason::kOtherImu, 1);
+  CameraImuProblem still = good;
+  for (VectorSample& sample : still.imus[0].stream.gyro) sample.value.setZero();
+  expect(still, Reason::kNoTurning, 0);
+  // Some time offset covers each of many intervals, but none five of them.
+  CameraImuProblem brief = good;
+  brief.imus[0].stream.gyro.erase(brief.imus[0].stream.gyro.begin() + 40,
+                                  brief.imus[0].stream.gyro.end());
+  expect(brief, Reason::kNoSharedTime, 0);
 }
 
 TEST(CalibrateCameraImu, RefusesEmptyInputAndFindsNoStartWithoutOverlap) {

@@ -19,8 +19,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kMargin = 0.05;  // [s]
-// Views further apart than this say little of the rate between them.
-constexpr double kLongestInterval = 0.5;  // [s]
 // Another camera's pose is taken where the first had none for so long.
 constexpr double kShortestGap = 0.2;  // [s]
 constexpr double kPoseLossPx = 1.0;
@@ -68,7 +66,7 @@ std::vector<RateInterval> RatesOf(const std::vector<TimedPose>& T_c_g) {
     const TimedPose& a = T_c_g[v - 1];
     const TimedPose& b = T_c_g[v];
     const double duration = b.time_s - a.time_s;
-    if (!(duration > 0.0) || duration > kLongestInterval) continue;
+    if (!(duration > 0.0) || duration > kLongestViewInterval) continue;
     rates.push_back({a.time_s, b.time_s, LogSo3(a.pose.R * b.pose.R.transpose()) / duration});
   }
   return rates;
@@ -113,12 +111,12 @@ class StartPath {
   Vector3d PositionAt(size_t a, size_t b, double u, double duration) const {
     const Vector3d& p = anchors_[a].pose.t;
     const Vector3d& q = anchors_[b].pose.t;
-    if (duration > kLongestInterval) return (1.0 - u) * p + u * q;
+    if (duration > kLongestViewInterval) return (1.0 - u) * p + u * q;
     const auto slope = [&](size_t k) -> Vector3d {
       const size_t before = k == 0 ? 0 : k - 1;
       const size_t after = std::min(k + 1, anchors_.size() - 1);
       const double time = anchors_[after].time_s - anchors_[before].time_s;
-      if (time > 2.0 * kLongestInterval) return (q - p) / duration;
+      if (time > 2.0 * kLongestViewInterval) return (q - p) / duration;
       return (anchors_[after].pose.t - anchors_[before].pose.t) / time;
     };
     const double v = 1.0 - u;
@@ -178,13 +176,24 @@ std::vector<TimedPose> PosesOfImu(const std::vector<BoardPoses>& poses,
   return anchors;
 }
 
+// Why a camera's rates could not be aligned with those of the gyroscope.
+CameraImuNoStart::Reason WhyNotAligned(size_t num_poses, const std::vector<RateInterval>& rates,
+                                       const std::vector<RateSample>& gyro, double max_offset_s) {
+  using Reason = CameraImuNoStart::Reason;
+  if (num_poses <= kMinRateIntervals) return Reason::kNoBoardPoses;
+  if (rates.size() < kMinRateIntervals) return Reason::kViewsFarApart;
+  return MostCoveredIntervals(rates, gyro, max_offset_s) < kMinRateIntervals ? Reason::kNoSharedTime
+                                                                             : Reason::kNoTurning;
+}
+
 }  // namespace
 
-std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem,
-                                                 const CameraImuOptions& options,
-                                                 double knot_spacing_s) {
+std::variant<CameraImuStart, CameraImuNoStart> FindCameraImuStart(const CameraImuProblem& problem,
+                                                                  const CameraImuOptions& options,
+                                                                  double knot_spacing_s) {
+  using Reason = CameraImuNoStart::Reason;
   const ImuStream& stream = problem.imus.front().stream;
-  if (stream.gyro.size() < 2 || stream.accel.size() < 2) return std::nullopt;
+  if (stream.gyro.size() < 2) return CameraImuNoStart{Reason::kNoSharedTime, 0};
   const Time epoch = stream.gyro.front().stamp;
   CameraImuSuspects suspects;
   for (const CameraImuImu& imu : problem.imus) {
@@ -204,13 +213,16 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
                           poses.back().squared_errors_px2.end());
     if (problem.prior) {
       cameras.push_back(problem.prior->estimate.cameras[n]);
-      if (poses.back().T_c_g.empty()) return std::nullopt;
+      if (poses.back().T_c_g.empty()) return CameraImuNoStart{Reason::kNoBoardPoses, n};
       continue;
     }
     const std::vector<RateInterval> rates = RatesOf(poses.back().T_c_g);
-    const auto alignment =
-        AlignRates(rates, gyro, problem.estimate_time_offsets ? options.max_time_offset_s : 0.0);
-    if (!alignment) return std::nullopt;
+    const double max_offset_s = problem.estimate_time_offsets ? options.max_time_offset_s : 0.0;
+    const auto alignment = AlignRates(rates, gyro, max_offset_s);
+    if (!alignment) {
+      return CameraImuNoStart{WhyNotAligned(poses.back().T_c_g.size(), rates, gyro, max_offset_s),
+                              n};
+    }
     cameras.push_back(
         {camera.model, {alignment->R_c_i, Vector3d::Zero()}, alignment->time_offset_s});
     if (n == 0) bias.gyro = alignment->gyro_bias;
@@ -228,7 +240,7 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
                                  (stream.accel.front().stamp - epoch).seconds()});
   const double end = std::min({anchors.back().time_s + kMargin, gyro.back().time_s,
                                (stream.accel.back().stamp - epoch).seconds()});
-  if (!(end - begin > 2.0 * knot_spacing_s)) return std::nullopt;
+  if (!(end - begin > 2.0 * knot_spacing_s)) return CameraImuNoStart{Reason::kNoSharedTime, 0};
   // Whole nanoseconds, so that the spline's time 0 is a stamp.
   const Time start = epoch + Duration::FromSeconds(begin);
   const double duration = end - begin;
@@ -268,7 +280,7 @@ std::optional<CameraImuStart> FindCameraImuStart(const CameraImuProblem& problem
       const auto alignment =
           AlignRates(rates, SamplesOf(problem.imus[n].stream.gyro, result.suspects.gyro[n], start),
                      options.max_time_offset_s);
-      if (!alignment) return std::nullopt;
+      if (!alignment) return CameraImuNoStart{Reason::kOtherImu, n};
       imu.T_i_imu.R = alignment->R_c_i;
       imu.time_offset_s = -alignment->time_offset_s;
       bias = {alignment->gyro_bias, Vector3d::Zero()};

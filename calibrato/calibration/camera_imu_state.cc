@@ -16,6 +16,15 @@ ImuBias CameraImuState::BiasAt(int imu, double t_s) const {
   return {(1.0 - u) * a.gyro + u * b.gyro, (1.0 - u) * a.accel + u * b.accel};
 }
 
+ImuBias MeanBias(const ImuCalibrationState& imu) {
+  ImuBias mean;
+  for (const ImuBias& bias : imu.biases) {
+    mean.gyro += bias.gyro / static_cast<double>(imu.biases.size());
+    mean.accel += bias.accel / static_cast<double>(imu.biases.size());
+  }
+  return mean;
+}
+
 CameraImuState StateAlong(const std::function<Rigid3(double t_s)>& pose_g_i, Time start,
                           double duration_s, double knot_spacing_s, int spline_order,
                           const Eigen::Vector3d& gravity_g,

@@ -36,6 +36,9 @@ struct ImuCalibrationState {
   std::vector<ImuBias> biases;  ///< At knots that are `block_duration_s` apart, from time 0 on.
 };
 
+/// Over time: of all knots alike.
+[[nodiscard]] ImuBias MeanBias(const ImuCalibrationState& imu);
+
 /// All unknowns of a camera-IMU problem.
 struct CameraImuState {
   Time start;                 ///< Of the spline: its time 0, on the clock of IMU 0.

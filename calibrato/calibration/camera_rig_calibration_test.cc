@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrato/base/input_error_testing.h"
 #include "calibrato/calibration/synthetic_rig_for_test.h"
+#include "calibrato/sensors/board_symmetry.h"
 
 namespace calibrato {
 namespace {
@@ -117,6 +119,122 @@ TEST(CalibrateCameraRig, CamerasWithoutSharedFramesAreCalibratedOnTheirOwn) {
   EXPECT_EQ(result.covariance.rows(), 8 + 8 + 6 + 4);
   EXPECT_EQ(result.covariance_names.back(), "cam2.pv");
   EXPECT_EQ(result.covariance(25, 0), 0.0);
+}
+
+// Camera 1 sees nothing together with the others, which are related all the same.
+TEST(CalibrateCameraRig, RelatesACameraToAnEarlierOneThanItsNeighbour) {
+  const CameraRigProblem together = MakeProblem(0.2, 5);
+  CameraRigProblem problem = together;
+  for (int& frame : problem.frame_of_view[1]) frame += 1000;
+  const CameraRigCalibration result = CalibrateCameraRig(problem);
+  EXPECT_EQ(result.termination, Termination::kConverged);
+  EXPECT_FALSE(result.T_cn_cnm1[0]);
+  EXPECT_FALSE(result.T_cn_cnm1[1]);
+  EXPECT_FALSE(result.earlier_relations[0]);
+  ASSERT_TRUE(result.earlier_relations[1]);
+  EXPECT_EQ(result.earlier_relations[1]->camera, 0);
+  const SyntheticRig truth = Trinocular();
+  const Rigid3 T_c2_c0 = truth.T_cn_cnm1[1] * truth.T_cn_cnm1[0];
+  EXPECT_LT(result.earlier_relations[1]->T_cn_camera.DifferenceTo(T_c2_c0).norm(), 5e-3);
+  // cam0 and cam2 with their relation, then cam1 on its own.
+  ASSERT_EQ(result.covariance_names.size(), 8U + 4U + 6U + 8U);
+  EXPECT_EQ(result.covariance_names[8], "cam2.fu");
+  EXPECT_EQ(result.covariance_names[12], "cam2.from_cam0.rot_x");
+  EXPECT_EQ(result.covariance_names[17], "cam2.from_cam0.pos_z");
+  EXPECT_EQ(result.covariance_names[18], "cam1.fu");
+  EXPECT_FALSE(CalibrateCameraRig(together).earlier_relations[1]);
+}
+
+TEST(CalibrateCameraRig, RefusesOneBendingForCamerasThatAreNotRelated) {
+  CameraRigProblem problem = MakeProblem(0.2, 5);
+  problem.estimate_bending = true;
+  for (int& frame : problem.frame_of_view[1]) frame += 1000;
+  const std::string message = InputErrorOf([&] { (void)CalibrateCameraRig(problem); });
+  EXPECT_NE(message.find("cam0, cam2 | cam1"), std::string::npos) << message;
+  // One that can't be calibrated has no part in it.
+  problem.cameras[1].views.clear();
+  problem.frame_of_view[1].clear();
+  EXPECT_TRUE(CalibrateCameraRig(problem).bending);
+}
+
+TEST(CalibrateCameraRig, RefusesTheBendingOfABoardThatLooksTheSameAfterAQuarterTurn) {
+  const auto refused = [](const Board& board) {
+    Rng rng(21);
+    CameraRigProblem problem = MakeRigProblem(Trinocular(), board, 30, 0.2, rng);
+    problem.board = board;
+    problem.estimate_bending = true;
+    return InputErrorOf([&] { (void)CalibrateCameraRig(problem); });
+  };
+  const std::string checkerboard = refused(Checkerboard{6, 6, 0.03, 0.03});
+  EXPECT_NE(checkerboard.find("odd sum"), std::string::npos) << checkerboard;
+  const std::string circles = refused(CircleGrid{5, 5, 0.03, false});
+  EXPECT_NE(circles.find("asymmetric"), std::string::npos) << circles;
+  // Half a turn leaves the bending as it is.
+  EXPECT_EQ(refused(Checkerboard{5, 7, 0.03, 0.03}), "");
+}
+
+// The views of cameras 1 and 2 numbered from any of the board's sides, frame by frame.
+CameraRigProblem NumberedAtWill(const Board& board, uint64_t seed, int num_frames) {
+  Rng rng(seed);
+  CameraRigProblem problem = MakeRigProblem(Trinocular(), board, num_frames, 0.2, rng);
+  problem.board = board;
+  const std::vector<BoardTurn> turns = BoardTurns(board);
+  for (size_t c = 1; c < problem.cameras.size(); ++c) {
+    for (BoardView& view : problem.cameras[c].views) {
+      const auto side =
+          static_cast<size_t>(rng.Uniform() * (static_cast<double>(turns.size()) + 1.0));
+      if (side == turns.size()) continue;
+      view = Renumbered(view, turns[side].numbering, BoardPoints(board));
+    }
+  }
+  return problem;
+}
+
+TEST(CalibrateCameraRig, NumbersABoardThatLooksTheSameFromSeveralSidesAlikeForAllCameras) {
+  for (const Board& board :
+       {Board(Checkerboard{6, 8, 0.03, 0.03}), Board(CircleGrid{6, 6, 0.03, false}),
+        Board(CircleGrid{6, 4, 0.02, true})}) {
+    SCOPED_TRACE(Describe(board));
+    const CameraRigCalibration result = CalibrateCameraRig(NumberedAtWill(board, 10, 30));
+    EXPECT_EQ(result.termination, Termination::kConverged);
+    EXPECT_EQ(result.num_separated_views, 0);
+    EXPECT_TRUE(result.groups_of_unknown_side.empty());
+    ASSERT_TRUE(result.T_cn_cnm1[0] && result.T_cn_cnm1[1]);
+    const Eigen::VectorXd error = ErrorOf(result, Trinocular());
+    EXPECT_LT(error.dot(result.covariance.ldlt().solve(error)), 62.5);  // 99.9 % of chi-square, 32
+    for (const CameraCalibration& camera : result.cameras) {
+      EXPECT_TRUE(camera.rejected_views.empty());
+      EXPECT_TRUE(camera.rejected_corners.empty());
+    }
+  }
+}
+
+TEST(CalibrateCameraRig, SaysWhereTheSidesOfTheBoardCannotBeTold) {
+  // The cameras share one frame: each side of the board would do.
+  CameraRigProblem problem = NumberedAtWill(Checkerboard{6, 8, 0.03, 0.03}, 11, 30);
+  const std::vector<int>& frames = problem.frame_of_view[0];
+  int shared = -1;
+  for (int& frame : problem.frame_of_view[1]) {
+    const bool is_shared = std::find(frames.begin(), frames.end(), frame) != frames.end();
+    if (is_shared && shared < 0) shared = frame;
+    if (frame != shared) frame += 1000;
+  }
+  std::sort(problem.frame_of_view[1].begin(), problem.frame_of_view[1].end());
+  ASSERT_GE(shared, 0);
+  problem.cameras.pop_back();
+  problem.frame_of_view.pop_back();
+  // In the order of the frames: the shared one first.
+  std::vector<BoardView>& views = problem.cameras[1].views;
+  const auto found = std::find_if(views.begin(), views.end(), [&](const BoardView& view) {
+    return view.name == std::to_string(shared);
+  });
+  std::rotate(views.begin(), found, found + 1);
+  const CameraRigCalibration result = CalibrateCameraRig(problem);
+  ASSERT_EQ(result.groups_of_unknown_side.size(), 1U);
+  EXPECT_EQ(result.groups_of_unknown_side[0], (std::vector<int>{0, 1}));
+  // The cameras are turned by 0.15 rad, not by half a turn more.
+  ASSERT_TRUE(result.T_cn_cnm1[0]);
+  EXPECT_LT(LogSo3(result.T_cn_cnm1[0]->R).norm(), 0.5);
 }
 
 TEST(CalibrateCameraRig, ACameraWithoutViewsDoesNotStopTheOthers) {

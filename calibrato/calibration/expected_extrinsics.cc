@@ -366,7 +366,9 @@ std::optional<ExpectedExtrinsics> ExpectExtrinsics(const PlannedRig& rig,
   if (!std::isfinite(value.value)) return std::nullopt;
   if (!want_gradient) return expected;
 
-  const MatrixXd X = factor->ExtendedFromBorder(covariance.leftCols<6>() * value.root);
+  MatrixXd wanted = MatrixXd::Zero(system.num_unknowns(), value.root.cols());
+  wanted.middleRows(system.num_blocks() * system.block_size(), 6) = value.root;
+  const MatrixXd X = factor->Solve(wanted);
   for (const PlannedImuInstant& instant : motion.imu) {
     expected.gradient.imu.push_back(
         ImuGradient(instant, layout.At(instant.t_s), gravity, weights, layout, X));

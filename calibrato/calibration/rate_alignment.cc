@@ -11,7 +11,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr size_t kMinIntervals = 5;
 // Rates of hands and arms change slowly over a fiftieth of a second.
 constexpr double kCoarseStep = 0.02;  // [s]
 constexpr double kFineStep = 0.0025;  // [s]
@@ -45,6 +44,11 @@ class RateIntegral {
   std::vector<Vector3d> sums_;
 };
 
+// Of a search from 0 to the end of a range.
+int NumSteps(double range, double step) {
+  return static_cast<int>(std::floor(range / step + 1e-9));
+}
+
 std::optional<RateAlignment> AlignAt(const std::vector<RateInterval>& intervals,
                                      const RateIntegral& integral, double offset_s) {
   Vector3d mean_c = Vector3d::Zero();
@@ -68,7 +72,7 @@ std::optional<RateAlignment> AlignAt(const std::vector<RateInterval>& intervals,
     square_i += rate_i.squaredNorm();
     ++count;
   }
-  if (count < kMinIntervals) return std::nullopt;
+  if (count < kMinRateIntervals) return std::nullopt;
   const auto n = static_cast<double>(count);
   mean_c /= n;
   mean_i /= n;
@@ -97,7 +101,7 @@ std::optional<RateAlignment> AlignRates(const std::vector<RateInterval>& interva
   const RateIntegral integral(gyro);
   std::optional<RateAlignment> best;
   const auto search = [&](double centre, double range, double step) {
-    const auto steps = static_cast<int>(std::floor(range / step + 1e-9));
+    const int steps = NumSteps(range, step);
     for (int k = -steps; k <= steps; ++k) {
       const auto here = AlignAt(intervals, integral, centre + k * step);
       if (here && (!best || here->correlation > best->correlation)) best = here;
@@ -115,6 +119,23 @@ std::optional<RateAlignment> AlignRates(const std::vector<RateInterval>& interva
   if (!(bend < 0.0)) return best;
   const double shift = 0.5 * (before->correlation - after->correlation) / bend;
   return AlignAt(intervals, integral, centre + std::clamp(shift, -1.0, 1.0) * kFineStep);
+}
+
+size_t MostCoveredIntervals(const std::vector<RateInterval>& intervals,
+                            const std::vector<RateSample>& gyro, double max_offset_s) {
+  if (gyro.size() < 2) return 0;
+  const RateIntegral integral(gyro);
+  size_t most = 0;
+  const int steps = NumSteps(max_offset_s, kCoarseStep);
+  for (int k = -steps; k <= steps; ++k) {
+    const double offset_s = k * kCoarseStep;
+    const auto num_covered =
+        std::count_if(intervals.begin(), intervals.end(), [&](const RateInterval& interval) {
+          return integral.Covers(interval.begin_s + offset_s, interval.end_s + offset_s);
+        });
+    most = std::max(most, static_cast<size_t>(num_covered));
+  }
+  return most;
 }
 
 }  // namespace calibrato

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -27,13 +28,21 @@ struct RateAlignment {
   double correlation = 0.0;   ///< Of R_c_i (omega_i - bias) with the sensor's rates, up to 1.
 };
 
+/// From fewer nothing is found.
+inline constexpr size_t kMinRateIntervals = 5;
+
 /// The time offset within +- max_offset_s at which the rates agree best when turned by the best
 /// rotation: for each offset rotation and bias in closed form (Wahba's problem on rates from which
 /// their mean is taken; Kabsch 1976), the offset by search and a parabola through the best three.
 /// Intervals that the gyroscope did not record whole are left out.
-/// @return nothing with fewer than 5 intervals at every offset, or without any rotation.
+/// @return nothing with fewer than kMinRateIntervals at every offset, or without any rotation.
 [[nodiscard]] std::optional<RateAlignment> AlignRates(const std::vector<RateInterval>& intervals,
                                                       const std::vector<RateSample>& gyro,
                                                       double max_offset_s);
+
+/// How many intervals the gyroscope recorded whole at that time offset, of those that AlignRates
+/// looks at, at which they are most.
+[[nodiscard]] size_t MostCoveredIntervals(const std::vector<RateInterval>& intervals,
+                                          const std::vector<RateSample>& gyro, double max_offset_s);
 
 }  // namespace calibrato

@@ -62,16 +62,17 @@ class RigAdjuster {
                                                  options_.noise_stddev_px.end()));
         (void)Judge();
       }
-      for (int round = 0; round < kMaxRounds; ++round) {
+      // The last round's judgement would not be adjusted to.
+      do {
         termination = Adjust(max_iterations, 0.0);
-        if (!Judge()) break;
-      }
+      } while (++num_rounds_ < kMaxRounds && Judge());
     }
     RigAdjustment result;
     result.termination = termination;
     result.group = group_;
     result.bending = bending_;
     result.num_separated_views = num_separated_;
+    result.num_rounds = num_rounds_;
     AddCovariance(&result);
     return result;
   }
@@ -82,7 +83,7 @@ class RigAdjuster {
     for (size_t k = 0; k < fits_.size(); ++k) {
       for (size_t v = 0; v < fits_[k]->views.size(); ++v) {
         if (fits_[k]->views[v].count() == 0) continue;
-        by_frame[frames_[static_cast<size_t>(group_.cameras[k])][v]].push_back({k, v});
+        by_frame[FrameOf(k, v)].push_back({k, v});
       }
     }
     Observations seen;
@@ -155,10 +156,12 @@ class RigAdjuster {
     group_.T_cn_cnm1 = adjusted.state.T_cn_cnm1;
     bending_ = adjusted.state.bending;
     for (size_t k = 0; k < fits_.size(); ++k) fits_[k]->model = adjusted.state.models[k];
+    T_c0_g_.clear();
     for (size_t i = 0; i < seen.sources.size(); ++i) {
       const auto& [k, v] = seen.sources[i];
-      fits_[k]->views[v].T_c_g = adjusted.state.T_cn_c0(static_cast<int>(k)) *
-                                 adjusted.state.T_c0_g[static_cast<size_t>(seen.bundle[i].frame)];
+      const Rigid3& T_c0_g = adjusted.state.T_c0_g[static_cast<size_t>(seen.bundle[i].frame)];
+      fits_[k]->views[v].T_c_g = adjusted.state.T_cn_c0(static_cast<int>(k)) * T_c0_g;
+      T_c0_g_[FrameOf(k, v)] = T_c0_g;
     }
     return adjusted.termination;
   }
@@ -168,36 +171,63 @@ class RigAdjuster {
     return shapes_ ? shapes_->Bent(view, bending_) : view;
   }
 
+  int FrameOf(size_t k, size_t v) const {
+    return frames_[static_cast<size_t>(group_.cameras[k])][v];
+  }
+
+  double Threshold(size_t k) const {
+    std::vector<double> errors;
+    for (size_t v = 0; v < fits_[k]->views.size(); ++v) {
+      if (fits_[k]->views[v].count() == 0) continue;
+      const Eigen::Matrix2Xd residuals =
+          ReprojectionResiduals(*fits_[k]->model, Bent(k, v), fits_[k]->views[v].T_c_g);
+      for (Eigen::Index i = 0; i < residuals.cols(); ++i) {
+        const double error = residuals.col(i).squaredNorm();
+        errors.push_back(std::isnan(error) ? HUGE_VAL : error);
+      }
+    }
+    return OutlierThreshold(std::move(errors));
+  }
+
+  // A view to be judged: as it is, or, where it was left out though it has a pose, at that of its
+  // frame.
+  ViewInliers AtItsFrame(size_t k, size_t v) const {
+    ViewInliers view = fits_[k]->views[v];
+    if (view.count() > 0 || view.reason != ViewRejection::kDoesNotFit) return view;
+    const auto T_c0_g = T_c0_g_.find(FrameOf(k, v));
+    if (T_c0_g == T_c0_g_.end()) return view;
+    view.T_c_g = group_.T_to_from(k, 0) * T_c0_g->second;
+    view.corners.assign(view.corners.size(), true);
+    return view;
+  }
+
   // Leaves out what does not fit, takes back what does, and separates views that fit from another
-  // pose than their frame's. Whether any of this was needed.
+  // pose than that of their frame's others. Whether any of this was needed.
   bool Judge() {
-    std::map<int, int> num_views;
+    std::map<int, int> num_used;
     for (size_t k = 0; k < fits_.size(); ++k) {
-      for (const int frame : frames_[static_cast<size_t>(group_.cameras[k])]) ++num_views[frame];
+      for (size_t v = 0; v < fits_[k]->views.size(); ++v) {
+        if (fits_[k]->views[v].count() > 0) ++num_used[FrameOf(k, v)];
+      }
     }
     bool changed = false;
     for (size_t k = 0; k < fits_.size(); ++k) {
       if (!problems_[k]->reject_outliers) continue;
-      std::vector<double> errors;
-      for (size_t v = 0; v < fits_[k]->views.size(); ++v) {
-        if (fits_[k]->views[v].count() == 0) continue;
-        const Eigen::Matrix2Xd residuals =
-            ReprojectionResiduals(*fits_[k]->model, Bent(k, v), fits_[k]->views[v].T_c_g);
-        for (Eigen::Index i = 0; i < residuals.cols(); ++i) {
-          const double error = residuals.col(i).squaredNorm();
-          errors.push_back(std::isnan(error) ? HUGE_VAL : error);
-        }
-      }
-      const double threshold = OutlierThreshold(std::move(errors));
+      const double threshold = Threshold(k);
       for (size_t v = 0; v < fits_[k]->views.size(); ++v) {
         ViewInliers& view = fits_[k]->views[v];
-        ViewInliers judged = JudgedView(*fits_[k]->model, Bent(k, v), view, threshold);
-        if (judged.corners == view.corners && judged.T_c_g.t == view.T_c_g.t) continue;
-        changed = true;
-        const int frame = frames_[static_cast<size_t>(group_.cameras[k])][v];
-        const bool moved = judged.count() > 0 && judged.T_c_g.t != view.T_c_g.t;
+        const ViewInliers before = AtItsFrame(k, v);
+        ViewInliers judged = JudgedView(*fits_[k]->model, Bent(k, v), before, threshold);
+        const bool moved = judged.count() > 0 && judged.T_c_g.t != before.T_c_g.t;
+        changed = changed || moved || judged.corners != view.corners;
+        int& num_in_frame = num_used[FrameOf(k, v)];
+        if (view.count() > 0) --num_in_frame;
         view = std::move(judged);
-        if (moved && num_views[frame] > 1) Separate({k, v});
+        if (moved && num_in_frame > 0) {
+          Separate({k, v});
+        } else if (view.count() > 0) {
+          ++num_in_frame;
+        }
       }
     }
     return changed;
@@ -263,6 +293,8 @@ class RigAdjuster {
   std::vector<std::vector<int>> frames_;  // [camera of the problem][view]
   int next_frame_ = 0;
   int num_separated_ = 0;
+  int num_rounds_ = 0;
+  std::map<int, Rigid3> T_c0_g_;                // By the number of the frame, as last adjusted.
   std::vector<CameraFit*> fits_;                // of the group
   std::vector<const CameraProblem*> problems_;  // of the group
   std::optional<BendingShapes> shapes_;

@@ -257,7 +257,9 @@ const Minimum& BestMinimum(const std::vector<Minimum>& minima) {
 }  // namespace
 
 ViewInliers StartView(const CameraModel& model, const BoardView& view, int max_iterations) {
-  ViewInliers start{{}, std::vector<bool>(static_cast<size_t>(view.num_corners()), false), {}};
+  ViewInliers start{{},
+                    std::vector<bool>(static_cast<size_t>(view.num_corners()), false),
+                    ViewRejection::kNoPose};
   if (view.num_corners() < kMinCorners) {
     start.reason = ViewRejection::kTooFewCorners;
     return start;

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "calibrato/geometry/so3.h"
 
@@ -16,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kLargestShare = 0.1;
-constexpr double kLongestViewInterval = 0.5;     // Between neighbours [s].
+constexpr double kFurthestNeighbour = 0.5;       // Between neighbours [s].
 constexpr double kLongestSampleInterval = 0.05;  // [s]
 constexpr double kViewTimesMedian = 10.0;
 constexpr double kLeastViewDeviation = 2e-3;  // [rad], about a pixel.
@@ -40,9 +42,11 @@ class Neighbourhood {
     for (auto i = static_cast<std::ptrdiff_t>(k) + direction;
          i >= 0 && i < static_cast<std::ptrdiff_t>(size()); i += direction) {
       const auto n = static_cast<size_t>(i);
-      if (suspect_[n]) continue;
       const double interval_s = std::abs(times_s_[n] - times_s_[k]);
-      if (!(interval_s > 0.0 && interval_s <= longest_interval_s_)) return std::nullopt;
+      // Before suspects are passed over, or a long run of them would be walked through each time.
+      if (!(interval_s <= longest_interval_s_)) return std::nullopt;
+      if (suspect_[n]) continue;
+      if (!(interval_s > 0.0)) return std::nullopt;
       return n;
     }
     return std::nullopt;
@@ -93,27 +97,29 @@ std::vector<bool> FindSuspects(Neighbourhood* all, double times_median, double l
   std::nth_element(sorted.begin(), middle, sorted.end());
   const double threshold = std::max(least_deviation, times_median * *middle);
 
-  std::vector<size_t> candidates;
+  // The worst first; of equals the earlier one.
+  std::set<std::pair<double, size_t>> candidates;
   for (size_t k = 0; k < deviations.size(); ++k) {
-    if (deviations[k] > threshold) candidates.push_back(k);
+    if (deviations[k] > threshold) candidates.emplace(-deviations[k], k);
   }
   const auto most = static_cast<size_t>(kLargestShare * static_cast<double>(all->size()));
   for (size_t num_suspects = 0; !candidates.empty(); ++num_suspects) {
-    const auto worst =
-        *std::max_element(candidates.begin(), candidates.end(),
-                          [&](size_t a, size_t b) { return deviations[a] < deviations[b]; });
     if (num_suspects == most) return none;
+    const size_t worst = candidates.begin()->second;
+    candidates.erase(candidates.begin());
     all->Suspect(worst);
-    deviations[worst] = 0.0;
     // Those that it had helped to predict.
     for (const int direction : {-1, +1}) {
       auto near = all->Next(worst, direction);
       for (int i = 0; i < 2 && near; ++i) {
+        const bool was_candidate = candidates.erase({-deviations[*near], *near}) > 0;
         deviations[*near] = deviation_of(*near);
+        if (was_candidate && deviations[*near] > threshold) {
+          candidates.emplace(-deviations[*near], *near);
+        }
         near = all->Next(*near, direction);
       }
     }
-    std::erase_if(candidates, [&](size_t k) { return !(deviations[k] > threshold); });
   }
   return all->suspect();
 }
@@ -134,7 +140,7 @@ std::vector<bool> FindSuspectViews(const std::vector<TimedPose>& T_c_g, const Ma
     views.push_back({T_g_c.R * R_c_i, T_g_c.t, turns.At(view.time_s)});
     times_s.push_back(view.time_s);
   }
-  Neighbourhood all(std::move(times_s), kLongestViewInterval);
+  Neighbourhood all(std::move(times_s), kFurthestNeighbour);
   const auto deviation_of = [&](size_t v) {
     const auto four = all.FourAround(v);
     if (!four) return 0.0;

@@ -24,7 +24,7 @@ struct TimedPose {
 // the motion is too fast for neighbours to predict each other. One between two that are off alike
 // is suspected with them.
 //
-// Both functions return one flag a measurement.
+// Both functions return one flag a measurement, in n log n steps.
 
 /// Views with a wrong stamp, or with a board that was found wrongly. Orientation is predicted from
 /// the view before, turned by the gyroscope, what is then missing at the view after it being shared

@@ -109,6 +109,20 @@ TEST(FindSuspectSamples, FindsSpikesAndNotTheirNeighbours) {
   EXPECT_EQ(SuspectsAmong(samples), spikes);
 }
 
+// A run of spikes that lasts longer than neighbours reach, at the end of the range of a sensor.
+TEST(FindSuspectSamples, BearsALongRunOfSpikes) {
+  std::vector<VectorSample> samples = Rates();
+  for (size_t k = 800; k < 950; ++k) samples[k].value.y() = k % 2 == 0 ? 30.0 : -30.0;
+  const std::set<size_t> suspects = SuspectsAmong(samples);
+  // Some of the run predict each other.
+  EXPECT_GT(suspects.size(), 100U);
+  for (const size_t k : suspects) {
+    // Two at its ends are predicted from it.
+    EXPECT_GE(k, 798U);
+    EXPECT_LT(k, 952U);
+  }
+}
+
 TEST(FindSuspectSamples, BearsGapsTwinsAndNothing) {
   std::vector<VectorSample> samples = Rates();
   samples.erase(samples.begin() + 300, samples.begin() + 400);

@@ -1,6 +1,7 @@
 #include "calibrato/cli/board_views.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -128,6 +129,20 @@ CameraViews ListedViews(const CameraRecording& camera, const std::vector<Entry>&
   return found;
 }
 
+// Of a camera whose images all lie before --from, after --to, or between those of --every.
+CameraViews ViewsOutsideWindow(const CameraRecording& camera) {
+  const auto& images = std::get<CameraImages>(camera.data);
+  CameraViews none;
+  if (camera.resolution) {
+    none.resolution = *camera.resolution;
+  } else if (!images.list.empty()) {
+    none.resolution = GreyOf(images.reader->Read(0)).resolution;
+  }
+  none.no_board = {"no board found", camera.name, "none of its images lies in the window",
+                   "choose --from and --to so that each camera has images between them"};
+  return none;
+}
+
 CameraViews DetectedViews(const CameraRecording& camera, const std::vector<Entry>& entries,
                           const std::vector<bool>& inside, const std::optional<Board>& board,
                           Progress* progress) {
@@ -146,23 +161,27 @@ CameraViews DetectedViews(const CameraRecording& camera, const std::vector<Entry
     numbers.push_back(k);
     frames[images.list[k].name] = entries[k].frame;
   }
+  if (source.names.empty()) return ViewsOutsideWindow(camera);
+  // A few are loaded again where the board is in none.
+  std::vector<std::atomic<bool>> is_counted(numbers.size());
   source.load = [&](size_t k) {
-    progress->Advance();
+    if (!is_counted[k].exchange(true)) progress->Advance();
     return GreyOf(images.reader->Read(numbers[k]));
   };
-  Detections detections = DetectBoards(source, *board);
-  CameraViews found{std::move(detections.views), {},
-                    detections.resolution,       std::move(detections.images_without_board),
-                    detections.rejected,         detections.is_numbered_by_continuity};
+  Detections detections = SearchForBoards(source, *board);
+  CameraViews found{std::move(detections.views),   {},
+                    detections.resolution,         std::move(detections.images_without_board),
+                    detections.rejected,           detections.is_numbered_by_continuity,
+                    std::move(detections.no_board)};
   for (const BoardView& view : found.views) found.frame_of_view.push_back(frames.at(view.name));
   return found;
 }
 
 }  // namespace
 
-std::vector<CameraViews> FindBoardViews(const Recording& recording,
-                                        const std::optional<Board>& board,
-                                        const RecordingWindow& window) {
+std::vector<CameraViews> FindBoardViewsOfAny(const Recording& recording,
+                                             const std::optional<Board>& board,
+                                             const RecordingWindow& window) {
   bool is_stamped = false;
   const auto entries = EntriesOf(recording, &is_stamped);
   const auto inside = Inside(entries, is_stamped, recording.path, window);
@@ -178,6 +197,19 @@ std::vector<CameraViews> FindBoardViews(const Recording& recording,
     found.push_back(std::holds_alternative<CameraImages>(camera.data)
                         ? DetectedViews(camera, entries[c], inside[c], board, &progress)
                         : ListedViews(camera, entries[c], inside[c]));
+  }
+  const bool is_anywhere = std::any_of(found.begin(), found.end(),
+                                       [](const CameraViews& camera) { return !camera.no_board; });
+  if (!is_anywhere && !found.empty()) throw InputError(*found.front().no_board);
+  return found;
+}
+
+std::vector<CameraViews> FindBoardViews(const Recording& recording,
+                                        const std::optional<Board>& board,
+                                        const RecordingWindow& window) {
+  std::vector<CameraViews> found = FindBoardViewsOfAny(recording, board, window);
+  for (const CameraViews& camera : found) {
+    if (camera.no_board) throw InputError(*camera.no_board);
   }
   return found;
 }

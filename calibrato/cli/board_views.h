@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrato/base/input_error.h"
 #include "calibrato/detection/rejection.h"
 #include "calibrato/recording/recording.h"
 #include "calibrato/sensors/board.h"
@@ -27,7 +28,8 @@ struct CameraViews {
   Resolution resolution;
   std::vector<std::string> images_without_board;
   RejectionCounts rejected;
-  bool is_numbered_by_continuity = false;  ///< As in Detections.
+  bool is_numbered_by_continuity = false;     ///< As in Detections.
+  std::optional<InputError::Parts> no_board;  ///< Likewise: set where no image shows it.
 };
 
 /// Finds the board in the recording's images, or takes the corners that it has; a line of progress
@@ -38,5 +40,11 @@ struct CameraViews {
 [[nodiscard]] std::vector<CameraViews> FindBoardViews(const Recording& recording,
                                                       const std::optional<Board>& board,
                                                       const RecordingWindow& window);
+
+/// The same, but a camera that never saw the board has no views and says why (`no_board`).
+/// @throws InputError likewise, but of boards that were not found only where no camera saw one.
+[[nodiscard]] std::vector<CameraViews> FindBoardViewsOfAny(const Recording& recording,
+                                                           const std::optional<Board>& board,
+                                                           const RecordingWindow& window);
 
 }  // namespace calibrato

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "calibrato/diagnosis/detection_findings.h"
 #include "calibrato/diagnosis/frame_selection.h"
 #include "calibrato/recording/recording.h"
+#include "calibrato/sensors/board_symmetry.h"
 #include "calibrato/sensors/camera_chain.h"
 
 namespace calibrato {
@@ -39,17 +41,27 @@ void CheckOptions(const Options& options) {
   for (const std::string& model : options.models) (void)CameraModel::NumParameters(model);
 }
 
-CameraRigProblem MakeProblem(std::vector<CameraViews>* found, const Options& options) {
+bool HasEnoughViews(const CameraViews& camera) {
+  return camera.views.size() >= static_cast<size_t>(kMinViews);
+}
+
+// One camera with enough views is worth a result, in which the others have failed.
+CameraRigProblem MakeProblem(std::vector<CameraViews>* found, const std::optional<Board>& board,
+                             const Options& options) {
+  const auto most = std::max_element(
+      found->begin(), found->end(),
+      [](const CameraViews& a, const CameraViews& b) { return a.views.size() < b.views.size(); });
+  if (!HasEnoughViews(*most)) {
+    throw InputError({"too few views", "cam" + std::to_string(most - found->begin()),
+                      "the board was found in " + std::to_string(most->views.size()) +
+                          ", at least " + std::to_string(kMinViews) + " are needed",
+                      "take more photos of the board, about twenty"});
+  }
   CameraRigProblem problem;
   problem.estimate_bending = options.estimate_bending;
+  problem.board = board;
   for (size_t c = 0; c < found->size(); ++c) {
     CameraViews& camera = (*found)[c];
-    if (camera.views.size() < static_cast<size_t>(kMinViews)) {
-      throw InputError({"too few views", "cam" + std::to_string(c),
-                        "the board was found in " + std::to_string(camera.views.size()) +
-                            ", at least " + std::to_string(kMinViews) + " are needed",
-                        "take more photos of the board, about twenty"});
-    }
     CameraProblem one;
     one.model = options.models.size() == 1 ? options.models[0] : options.models[c];
     one.resolution = camera.resolution;
@@ -64,6 +76,10 @@ CameraRigProblem MakeProblem(std::vector<CameraViews>* found, const Options& opt
 
 std::string CameraChainYaml(const CameraRigReport& report) {
   std::vector<Camera> chain;
+  std::string caution;
+  if (VerdictOf(report) == Verdict::kFail) {
+    caution = "# verdict: fail; not to be trusted, see result.json for why\n";
+  }
   std::string notes;
   for (size_t c = 0; c < report.cameras.size(); ++c) {
     const CameraCalibration& calibration = report.calibration.cameras[c];
@@ -76,7 +92,7 @@ std::string CameraChainYaml(const CameraRigReport& report) {
           "# distortion_model radtan5 (k1 k2 p1 p2 k3) is calibrato's; Kalibr does not know it.\n";
     }
   }
-  return notes + ToYaml(ToValue(chain));
+  return caution + notes + ToYaml(ToValue(chain));
 }
 
 // Detection's notes and what the views say; a model's failure to fit is the diagnosis's.
@@ -84,12 +100,25 @@ CameraRigReport MakeReport(CameraRigProblem problem, const std::vector<CameraVie
                            std::vector<Finding> findings) {
   CameraRigReport report;
   report.calibration = CalibrateCameraRig(problem);
-  report.findings = RigFindings(report.calibration);
+  report.findings = RigFindings(report.calibration, problem.board);
   report.findings.insert(report.findings.end(), findings.begin(), findings.end());
+  const std::vector<CameraCalibration>& cameras = report.calibration.cameras;
+  const bool is_whole = std::all_of(cameras.begin(), cameras.end(),
+                                    [](const CameraCalibration& c) { return c.model.has_value(); });
+  if (cameras.size() > 1 && !is_whole) {
+    report.findings.push_back({Severity::kInfo,
+                               "camchain.yaml is not written: it would lack a camera",
+                               "mend what is wrong with it, or choose the others with --images"});
+  }
   for (size_t c = 0; c < found.size(); ++c) {
     CameraReportCard card;
     card.name = "cam" + std::to_string(c);
     card.diagnosis = DiagnoseCamera(problem.cameras[c], report.calibration.cameras[c]);
+    if (found[c].no_board) {
+      const InputError::Parts& absence = *found[c].no_board;
+      card.diagnosis.findings = {
+          {Severity::kFail, absence.what + " in any image: " + absence.why, absence.remedy}};
+    }
     card.images_without_board = found[c].images_without_board;
     card.detection_rejected = found[c].rejected;
     for (Finding& finding : FindingsOnDetection(found[c].rejected)) {
@@ -99,10 +128,8 @@ CameraRigReport MakeReport(CameraRigProblem problem, const std::vector<CameraVie
       card.diagnosis.findings.push_back(
           {Severity::kInfo,
            "the board looks the same from several sides: its corners are numbered so that they "
-           "move "
-           "least from one image to the next",
-           "for a frame that does not depend on that, use a board with an odd sum of rows and "
-           "columns"});
+           "move least from one image to the next",
+           "for a frame that does not depend on that, " + SidedBoardAdvice(*problem.board)});
     }
     report.cameras.push_back(std::move(card));
   }
@@ -139,9 +166,9 @@ ExitCode RunCalibrateCamera(const Options& options, const GlobalOptions& global)
   PrintWarnings(warnings);
 
   stopwatch.Start("detection_s");
-  std::vector<CameraViews> found = FindBoardViews(recording, board, options.window);
+  std::vector<CameraViews> found = FindBoardViewsOfAny(recording, board, options.window);
   stopwatch.Start("solve_s");
-  CameraRigProblem problem = MakeProblem(&found, options);
+  CameraRigProblem problem = MakeProblem(&found, board, options);
   std::vector<Finding> findings = SelectFrames(selection, &problem);
   const CameraRigReport report = MakeReport(std::move(problem), found, std::move(findings));
 
@@ -153,6 +180,7 @@ ExitCode RunCalibrateCamera(const Options& options, const GlobalOptions& global)
     plots.Set("plots_" + report.cameras[c].name, CameraPlots(report, c));
   }
   const std::string chain = CameraChainYaml(report);
+  out.Remove("camchain.yaml");  // That of an earlier run.
   if (!chain.empty()) out.Add("camchain.yaml", chain);
   CommitResult("Camera calibration", result, plots, &stopwatch, &out);
   if (global.json) {
@@ -184,7 +212,9 @@ Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global) {
       ->capture_default_str();
   app.add_option("--resolution", options->resolution, "WIDTHxHEIGHT, for corner lists");
   app.add_option("--fix", options->fixed,
-                 "Parameters to hold, as p1,p2: distortion at 0, intrinsics at their start value")
+                 "Parameters to hold, as p1,fu=458.6; without a value distortion is held at 0, pu "
+                 "and pv in the middle of the image, any other where the views have it when it is "
+                 "free")
       ->delimiter(',');
   app.add_option(
          "--select", options->select,

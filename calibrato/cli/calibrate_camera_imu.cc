@@ -18,6 +18,7 @@
 #include "calibrato/diagnosis/camera_imu_diagnosis.h"
 #include "calibrato/diagnosis/camera_imu_document.h"
 #include "calibrato/diagnosis/camera_imu_plots.h"
+#include "calibrato/diagnosis/clock_steps.h"
 #include "calibrato/diagnosis/stream_check.h"
 #include "calibrato/diagnosis/stream_defects.h"
 #include "calibrato/recording/recording.h"
@@ -218,6 +219,14 @@ std::string ImuYaml(std::vector<Imu> imus, const CameraImuCalibration& calibrati
   return ToYaml(ToValue(imus));
 }
 
+// What stands at the head of a YAML that is not to be trusted, for whoever finds it without the
+// result.
+std::string Caution(Verdict verdict) {
+  if (verdict <= Verdict::kWarn) return "";
+  return "# verdict: " + std::string(VerdictName(verdict)) +
+         "; not to be trusted, see result.json for why\n";
+}
+
 // T_g_i on IMU 0's clock, in the columns of truth_poses.csv.
 std::string TrajectoryCsv(const CameraImuState& state) {
   std::string text = "timestamp [ns],x,y,z,qw,qx,qy,qz\n";
@@ -319,6 +328,9 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
   for (size_t n = 0; n < imus.size(); ++n) checked.push_back({recording.imus[n], imus[n].noise});
   CameraImuReport report;
   report.findings = CheckStreams(cameras, checked, options.gravity);
+  for (Finding& finding : CheckClocks(cameras, checked)) {
+    report.findings.push_back(std::move(finding));
+  }
 
   // A solve that can't be right is not tried: what is wrong with the recording says more.
   if (VerdictOf(report.findings) != Verdict::kFail) {
@@ -331,15 +343,21 @@ ExitCode RunCalibrateCameraImu(const Options& options, const GlobalOptions& glob
     report.calibration = CalibrateCameraImu(report.problem, solver);
     stopwatch.Start("diagnosis_s");
     report.diagnosis = DiagnoseCameraImu(report.problem, report.calibration);
+  } else {
+    report.calibration.termination = Termination::kNotTried;
   }
+  for (const Camera& camera : known.chain) report.resolutions.push_back(camera.resolution);
 
   const Value result = CameraImuResult(report);
   Value plots = Value::Object();
   plots.Set("plots", CameraImuPlots(report));
+  // Those of an earlier run must not stand beside this one's result.
+  for (const char* name : {"camchain-imucam.yaml", "imu.yaml", "trajectory.csv"}) out.Remove(name);
   if (report.calibration.state) {
     const CameraImuState& state = *report.calibration.state;
-    out.Add("camchain-imucam.yaml", CameraChainYaml(known.chain, state));
-    out.Add("imu.yaml", ImuYaml(imus, report.calibration));
+    const std::string caution = Caution(VerdictOf(report));
+    out.Add("camchain-imucam.yaml", caution + CameraChainYaml(known.chain, state));
+    out.Add("imu.yaml", caution + ImuYaml(imus, report.calibration));
     out.Add("trajectory.csv", TrajectoryCsv(state));
   }
   CommitResult("Camera-IMU calibration", result, plots, &stopwatch, &out);

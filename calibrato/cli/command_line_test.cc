@@ -239,6 +239,15 @@ TEST(Target, NamesAMissingKey) {
       {"board.yaml", "line 1", "missing key colSpacingMeters"});
 }
 
+TEST(Target, TakesNoKeyThatIsWantedForAMissingOne) {
+  ExpectTargetRefused(
+      "target_type: 'checkerboard'\ntargetRows: 5\nrowSpacingMeters: 0.03\n"
+      "colSpacingMeters: 0.03\n",
+      {"board.yaml", "missing key targetCols", "add 'targetCols: ...'"});
+  ExpectTargetRefused("target_type: 'aprilgrid'\ntagCols: 6\ntagSize: 0.088\ntagSpacing: 0.3\n",
+                      {"board.yaml", "missing key tagRows", "add 'tagRows: ...'"});
+}
+
 TEST(Target, NamesAWrongTypeWithLineAndKey) {
   ExpectTargetRefused(
       "target_type: 'checkerboard'\ntargetCols: six\ntargetRows: 5\nrowSpacingMeters: 0.03\n"

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -344,6 +345,69 @@ TEST_F(DataProblems, ABoardThatWasNeverSeen) {
                   recording_ + "/imu.yaml", "--out", scratch_.Path("out")});
   EXPECT_EQ(ended.exit_code, 2);
   EXPECT_THAT(ended.err, AllOf(HasSubstr("no corners"), HasSubstr("cam0_corners.csv")));
+}
+
+// Of a recording that is refused nothing is left that an earlier one wrote.
+TEST_F(DataProblems, LeaveNoEarlierResultBesideThem) {
+  (void)Calibrate(0);
+  EXPECT_NE(ContentOf(scratch_.Path("out/camchain-imucam.yaml")), "");
+  (void)scratch_.Write("out/notes.txt", "mine");
+  ForEachSample([](ImuRow* row) { row->stamp_ns += 1'000'000'000'000; });
+  const Value result = Calibrate(1);
+  ExpectNoResult(result);
+  EXPECT_EQ(result.At("termination").AsString(), "not tried");
+  const std::map<std::string, std::string> files = FilesBelow(scratch_.Path("out"));
+  std::vector<std::string> names;
+  for (const auto& [name, content] : files) names.push_back(name);
+  EXPECT_THAT(names, testing::ElementsAre("notes.txt", "plots.json", "report.html", "result.json",
+                                          "timing.json"));
+}
+
+// What is not to be trusted says so in the files that others read.
+TEST_F(DataProblems, ShowInTheHeadsOfFiles) {
+  (void)Calibrate(0);
+  EXPECT_THAT(ContentOf(scratch_.Path("out/camchain-imucam.yaml")), Not(HasSubstr("#")));
+  Record({4});
+  (void)Calibrate(1);
+  for (const char* name : {"out/camchain-imucam.yaml", "out/imu.yaml"}) {
+    EXPECT_THAT(ContentOf(scratch_.Path(name)),
+                testing::StartsWith("# verdict: inconclusive; not to be trusted"));
+    EXPECT_GT(ReadYaml(scratch_.Path(name)).size(), 0U);
+  }
+}
+
+TEST_F(DataProblems, ImagesMoreThanHalfASecondApart) {
+  KeepImages(7);
+  const Value result = Calibrate(1);
+  ExpectNoResult(result);
+  EXPECT_THAT(FindingsOf(result),
+              AllOf(HasSubstr("fail: cam0: its views are 0.7 s apart (median)"),
+                    HasSubstr("record 10 images a second or more"), Not(HasSubstr("no motion"))));
+}
+
+// A second camera that is as the first, but for its clock.
+TEST_F(DataProblems, ASecondCameraOnAnotherClock) {
+  Value chain = ReadYaml(scratch_.Path("camchain.yaml"));
+  chain.Set("cam1", chain.At("cam0"));
+  (void)scratch_.Write("camchain.yaml", ToYaml(chain));
+  for (const int64_t late_ns : {int64_t{2'000'000'000}, int64_t{1'000'000'000'000}}) {
+    std::istringstream lines(corners_);
+    std::string line;
+    std::getline(lines, line);
+    std::string text = line + "\n";
+    while (std::getline(lines, line)) {
+      const size_t comma = line.find(',');
+      text +=
+          std::to_string(std::stoll(line.substr(0, comma)) + late_ns) + line.substr(comma) + "\n";
+    }
+    (void)scratch_.Write("recording/cam1_corners.csv", text);
+    const Value result = Calibrate(1);
+    ExpectNoResult(result);
+    const std::string seconds = std::to_string(late_ns / 1'000'000'000);
+    EXPECT_THAT(FindingsOf(result), AllOf(HasSubstr("fail: the clock of imu0 is " + seconds +
+                                                    ".00 s behind that of cam1 | add -" + seconds),
+                                          Not(HasSubstr("that of cam0")), Not(HasSubstr("deg/s"))));
+  }
 }
 
 // An IMU that is mounted on its side, so that gravity lies along another of its axes.

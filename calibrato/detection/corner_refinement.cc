@@ -76,7 +76,7 @@ std::vector<std::optional<Eigen::Vector2d>> RefineCorners(const GreyImage& image
   }
   RejectWrongColours(is_dark_ahead, is_dark, &corners, rejected);
   const std::vector<LocalMap> refined_maps =
-      RemoveStrays(board, surroundings.free_edge_m, &corners, rejected);
+      RemoveStrays(board, surroundings.free_edge_m, FitLocalMaps, 1.0, &corners, rejected);
   for (size_t k = 0; k < n; ++k) {
     if (!corners[k]) continue;
     const Eigen::Vector2d curvature(refined_maps[k].CurvatureAlong(Eigen::Vector2d::UnitX()),

@@ -8,13 +8,12 @@
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/parallel.h"
-#include "calibrato/base/progress.h"
-#include "calibrato/detection/board_symmetry.h"
 #include "calibrato/detection/find_april_grid.h"
 #include "calibrato/detection/find_charuco.h"
 #include "calibrato/detection/find_checkerboard.h"
 #include "calibrato/detection/find_circle_grid.h"
 #include "calibrato/detection/similar_board.h"
+#include "calibrato/sensors/board_symmetry.h"
 
 namespace calibrato {
 namespace {
@@ -96,16 +95,16 @@ std::pair<std::string, std::string> Explain(const ImageSource& images, const Boa
   return {"", "check --target and that the whole board is sharp and in view"};
 }
 
-[[noreturn]] void FailWithoutBoard(const ImageSource& images, const Board& board,
-                                   const RejectionCounts& rejected) {
+InputError::Parts NoBoard(const ImageSource& images, const Board& board,
+                          const RejectionCounts& rejected) {
   const size_t count = images.names.size();
   const std::string where =
       count == 1 ? images.names.front() : images.names.front() + " .. " + images.names.back();
   const auto [seen, remedy] = Explain(images, board, rejected);
-  throw InputError({"no board found", where,
-                    "searched " + std::to_string(count) + (count == 1 ? " image" : " images") +
-                        " for a " + Describe(board) + (seen.empty() ? "" : "; " + seen),
-                    remedy});
+  return {"no board found", where,
+          "searched " + std::to_string(count) + (count == 1 ? " image" : " images") + " for a " +
+              Describe(board) + (seen.empty() ? "" : "; " + seen),
+          remedy};
 }
 
 std::string Text(Resolution resolution) {
@@ -143,19 +142,19 @@ std::optional<BoardView> DetectBoard(const GreyImage& image, const Board& board)
   return SearchForBoard(image, board).view;
 }
 
-Detections DetectBoards(const ImageSource& images, const Board& board) {
+Detections SearchForBoards(const ImageSource& images, const Board& board) {
+  if (images.names.empty()) {
+    throw InputError({"no board found", "", "there are no images", "record some"});
+  }
   assert(images.stamps.empty() || images.stamps.size() == images.names.size());
   cv::setNumThreads(1);  // the loop over the images uses the cores better
   struct Search {
     BoardSearch found;
     Resolution resolution;
   };
-  Progress progress("detecting", static_cast<int64_t>(images.names.size()));
   std::vector<Search> searches = ParallelMap<Search>(images.names.size(), [&](size_t k) -> Search {
     const GreyImage image = images.load(k);
-    Search search{SearchForBoard(image, board), image.resolution};
-    progress.Advance();
-    return search;
+    return {SearchForBoard(image, board), image.resolution};
   });
 
   Detections detections;
@@ -179,12 +178,16 @@ Detections DetectBoards(const ImageSource& images, const Board& board) {
     detections.views.push_back(*std::move(view));
   }
   if (detections.views.empty()) {
-    if (images.names.empty()) {
-      throw InputError({"no board found", "", "there are no images", "record some"});
-    }
-    FailWithoutBoard(images, board, detections.rejected);
+    detections.resolution = searches.front().resolution;
+    detections.no_board = NoBoard(images, board, detections.rejected);
   }
   NumberByContinuity(board, &detections);
+  return detections;
+}
+
+Detections DetectBoards(const ImageSource& images, const Board& board) {
+  Detections detections = SearchForBoards(images, board);
+  if (detections.no_board) throw InputError(*detections.no_board);
   return detections;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrato/base/input_error.h"
 #include "calibrato/detection/rejection.h"
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/image.h"
@@ -12,7 +13,7 @@
 
 // To add a board: its finder in a file of its own beside find_checkerboard.h, its line in
 // SearchForBoard, in the suggestions of similar_board.cc and, where it looks the same from several
-// sides, in board_symmetry.cc.
+// sides, in sensors/board_symmetry.cc.
 
 namespace calibrato {
 
@@ -47,7 +48,7 @@ struct BoardSearch {
 /// What was found in one camera's images.
 struct Detections {
   std::vector<BoardView> views;  ///< In the order of the images.
-  Resolution resolution;         ///< Of the images with the board.
+  Resolution resolution;         ///< Of the images with the board; without any, of the first.
   int num_images = 0;
   std::vector<std::string>
       images_without_board;  ///< Their names. They never count against the rest.
@@ -55,6 +56,10 @@ struct Detections {
   /// The board looks the same from several sides, and its corners were numbered so that they move
   /// least from one image to the next: worth a note to whoever relies on the board's frame.
   bool is_numbered_by_continuity = false;
+  /// Set where no image shows the board: how many were searched, what for, what was seen instead
+  /// (squares counted instead of inner corners, one row or column too many or too few, a mirrored
+  /// board, two boards at a time, tags of another family or another number), and what to try.
+  std::optional<InputError::Parts> no_board;
 };
 
 /// Where images come from: their names and how to get number k. Detection does not know of files.
@@ -68,10 +73,12 @@ struct ImageSource {
 /// board looks the same from several sides and the images have stamps (not all of them alike), a
 /// board that is turned in front of the camera keeps its corners' numbers from one image to the
 /// next.
-/// @throws InputError: an image that can't be loaded; boards found at two image sizes; no board in
-/// any image (says how many images, what was searched for, and what was seen instead: squares
-/// counted instead of inner corners, one row or column too many or too few, a mirrored board, two
-/// boards at a time, tags of another family or another number).
+/// @throws InputError: an image that can't be loaded; boards found at two image sizes; no images.
+[[nodiscard]] Detections SearchForBoards(const ImageSource& images, const Board& board);
+
+/// The same.
+/// @throws InputError: likewise, and where no image shows the board, with what SearchForBoards says
+/// of that.
 [[nodiscard]] Detections DetectBoards(const ImageSource& images, const Board& board);
 
 }  // namespace calibrato

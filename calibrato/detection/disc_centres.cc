@@ -9,7 +9,7 @@
 #include <numbers>
 #include <variant>
 
-#include "calibrato/detection/local_map.h"
+#include "calibrato/detection/lens_map.h"
 #include "calibrato/detection/stray_corners.h"
 
 namespace calibrato {
@@ -137,19 +137,6 @@ std::variant<Disc, DiscFlaw> MeasureDisc(const GreyImage& image, const LocalMap&
   return disc;
 }
 
-// The centroid of a disc's image minus the image of its centre.
-Eigen::Vector2d CentroidOffset(const LocalMap& map, double radius) {
-  const Eigen::Matrix2d inverse = map.J_pixel_board.inverse();
-  Eigen::Matrix2d J_x;
-  J_x << map.second.col(0), map.second.col(1);
-  Eigen::Matrix2d J_y;
-  J_y << map.second.col(1), map.second.col(2);
-  const Eigen::Vector2d gradient((inverse * J_x).trace(), (inverse * J_y).trace());
-  const double r2 = radius * radius;
-  return r2 / 8.0 * (map.second.col(0) + map.second.col(2)) +
-         r2 / 4.0 * (map.J_pixel_board * gradient);
-}
-
 double Median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -166,11 +153,18 @@ double RadiusFrom(const std::vector<LocalMap>& maps, const Eigen::VectorXd& area
   return Median(std::move(radii));
 }
 
+// Points are compared along x with those that follow, as far as these can be nearer.
 double SmallestDistance(const Eigen::Matrix2Xd& points) {
+  std::vector<Eigen::Vector2d> sorted;
+  for (Eigen::Index k = 0; k < points.cols(); ++k) sorted.emplace_back(points.col(k));
+  std::sort(sorted.begin(), sorted.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  });
   double smallest = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 1; k < points.cols(); ++k) {
-    smallest = std::min(smallest,
-                        (points.leftCols(k).colwise() - points.col(k)).colwise().norm().minCoeff());
+  for (auto from = sorted.begin(); from != sorted.end(); ++from) {
+    for (auto to = from + 1; to != sorted.end() && to->x() - from->x() < smallest; ++to) {
+      smallest = std::min(smallest, (*to - *from).norm());
+    }
   }
   return smallest;
 }
@@ -185,7 +179,11 @@ std::vector<std::optional<Eigen::Vector2d>> FindDiscCentres(const GreyImage& ima
   assert(board.cols() == pixels.cols() && areas.size() == pixels.cols());
   const auto n = static_cast<size_t>(pixels.cols());
   std::vector<std::optional<Eigen::Vector2d>> centres(n);
-  std::vector<LocalMap> maps = FitLocalMaps(board, pixels);
+  const auto fit = [&](const Eigen::Matrix2Xd& points, const Eigen::Matrix2Xd& seen,
+                       double radius) {
+    return FitLocalMapsThroughLens(points, seen, radius, image.resolution);
+  };
+  std::vector<LocalMap> maps = fit(board, pixels, 0.0);
   const double first_radius = RadiusFrom(maps, areas);
   const double gap = SmallestDistance(board);
   Eigen::Matrix2Xd centroids = pixels;
@@ -203,11 +201,13 @@ std::vector<std::optional<Eigen::Vector2d>> FindDiscCentres(const GreyImage& ima
       ++rejected->corners_of_bad_fit;
     }
   }
-  // The offsets are so smooth that the maps of the centroids do for those of the centres.
-  const double radius = RadiusFrom(FitLocalMaps(board, centroids), measured);
-  maps = RemoveStrays(board, {gap, gap}, &centres, rejected);
+  const double radius = RadiusFrom(fit(board, centroids, 0.0), measured);
+  const auto fit_centroids = [&](const Eigen::Matrix2Xd& points, const Eigen::Matrix2Xd& seen) {
+    return fit(points, seen, radius);
+  };
+  maps = RemoveStrays(board, {gap, gap}, fit_centroids, 0.5, &centres, rejected);
   for (size_t k = 0; k < n; ++k) {
-    if (centres[k]) *centres[k] -= CentroidOffset(maps[k], radius);
+    if (centres[k]) *centres[k] -= maps[k].CentroidOffset(radius);
   }
   return centres;
 }

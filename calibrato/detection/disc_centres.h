@@ -13,17 +13,13 @@ namespace calibrato {
 /// was rejected, which is counted.
 ///
 /// What can be seen of a disc is its outline, and the middle of that is not the image of the
-/// centre: perspective and distortion enlarge one half of the disc more than the other. With
-/// pixel(x, y) = p, J its Jacobian, and a disc of radius r, the centroid of the disc's image is, to
-/// second order in r,
-///
-///     centroid = p + r^2/8 (p_xx + p_yy) + r^2/4 J grad log |det J|
-///
-/// (expand the integral of p |det J| over the disc, over that of |det J|; the next terms are of
-/// fourth order). All of these are known from how the other discs lie (local_map.h), and r from how
-/// large they are, so that nothing about the lens and nothing but the grid about the board has to
-/// be known. The difference is 0.05 px for discs of 20 px seen at 45 degrees from a distance of ten
-/// times the spacing, and grows with the square of the disc's size.
+/// centre: perspective and distortion enlarge one half of the disc more than the other. By how much
+/// the centroid of the disc's image is beside it follows from how the image of the board bends
+/// there (LocalMap::CentroidOffset) and from the disc's radius. Where all the discs lie tells the
+/// one (lens_map.h), how large they are the other, so that nothing about the lens and nothing but
+/// the grid about the board has to be known. The difference is 0.05 px for discs of 20 px seen at
+/// 45 degrees from a distance of ten times the spacing, and grows with the square of the disc's
+/// size.
 ///
 /// Centroids are those of how much darker a pixel is than the white around it, so blur does not
 /// shift them.

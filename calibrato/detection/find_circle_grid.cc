@@ -12,6 +12,7 @@
 #include "calibrato/detection/corner_view.h"
 #include "calibrato/detection/dark_blobs.h"
 #include "calibrato/detection/disc_centres.h"
+#include "calibrato/detection/disc_numbering.h"
 #include "calibrato/detection/lattice.h"
 
 namespace calibrato {
@@ -19,6 +20,12 @@ namespace {
 
 // Discs one step apart are about equally large in the image.
 constexpr double kMaxAreaRatio = 2.0;
+
+// In how many lattices of more discs than the board has a disc may have been before it is no longer
+// started from. From one or another disc at an oblique board's edge the growth goes astray, so one
+// is not enough; without a limit a wall of n discs would be grown n times. Smaller lattices are
+// grown soon, and from another of their discs they may turn out to be the board.
+constexpr int kMaxWalls = 6;
 
 // A disc's place in the lattice of all discs, in integers. The discs of an asymmetric grid are on
 // the diagonals of a finer square lattice, which are a square lattice of their own.
@@ -59,9 +66,6 @@ std::optional<LatticeSeed> SeedAt(int k, const std::vector<DarkBlob>& blobs,
   return std::nullopt;
 }
 
-// By number on the board, the blobs; -1 where one is missing.
-using Numbering = std::vector<int>;
-
 // The lattice's coordinates may be any that span it: all matrices of integers up to 2 and
 // determinant +-1 are tried.
 std::vector<Eigen::Matrix2i> ChangesOfBasis() {
@@ -79,48 +83,58 @@ std::vector<Eigen::Matrix2i> ChangesOfBasis() {
   return changes;
 }
 
+// How many blobs beside the board's discs may have been taken for some of them.
+size_t MaxLeftOver(const CircleGrid& board) {
+  return static_cast<size_t>(std::min(board.rows, board.columns)) / 2;
+}
+
 using Places = std::map<std::pair<int, int>, int>;
 
 // All ways to number a lattice's blobs as the board's discs: with at most a tenth of them missing
 // and next to none left over.
-std::vector<Numbering> NumberingsOf(const std::vector<LatticeNode>& nodes,
-                                    const CircleGrid& board) {
+std::vector<DiscNumbering> NumberingsOf(const std::vector<LatticeNode>& nodes,
+                                        const CircleGrid& board) {
   std::vector<Eigen::Vector2i> places;
   for (int row = 0; row < board.rows; ++row) {
     for (int column = 0; column < board.columns; ++column) {
       places.push_back(LatticePlace(board, row, column));
     }
   }
-  std::vector<Numbering> numberings;
+  std::vector<DiscNumbering> numberings;
   const size_t num_discs = places.size();
-  const size_t max_left_over = static_cast<size_t>(std::min(board.rows, board.columns)) / 2;
+  const size_t max_left_over = MaxLeftOver(board);
   if (10 * nodes.size() < 9 * num_discs || nodes.size() > num_discs + max_left_over) return {};
+  Eigen::Vector2i board_low = places.front();
+  Eigen::Vector2i board_high = places.front();
+  for (const Eigen::Vector2i& place : places) {
+    board_low = board_low.cwiseMin(place);
+    board_high = board_high.cwiseMax(place);
+  }
   size_t most = 0;
   for (const Eigen::Matrix2i& change : ChangesOfBasis()) {
-    Places blobs;
+    const auto place_of = [&](const LatticeNode& node) -> Eigen::Vector2i {
+      return change * Eigen::Vector2i(node.row, node.column);
+    };
     Eigen::Vector2i low = Eigen::Vector2i::Constant(1 << 20);
     Eigen::Vector2i high = -low;
     for (const LatticeNode& node : nodes) {
-      const Eigen::Vector2i place = change * Eigen::Vector2i(node.row, node.column);
-      low = low.cwiseMin(place);
-      high = high.cwiseMax(place);
-      blobs[{place.x(), place.y()}] = node.point;
-    }
-    Eigen::Vector2i board_low = places.front();
-    Eigen::Vector2i board_high = places.front();
-    for (const Eigen::Vector2i& place : places) {
-      board_low = board_low.cwiseMin(place);
-      board_high = board_high.cwiseMax(place);
+      low = low.cwiseMin(place_of(node));
+      high = high.cwiseMax(place_of(node));
     }
     const Eigen::Vector2i first = low - board_low;
     const Eigen::Vector2i last = high - board_high;
     // A missing or a left-over row moves the box by one or two.
     if ((first - last).cwiseAbs().maxCoeff() > 2) continue;
+    Places blobs;
+    for (const LatticeNode& node : nodes) {
+      const Eigen::Vector2i place = place_of(node);
+      blobs[{place.x(), place.y()}] = node.point;
+    }
     const Eigen::Vector2i begin = first.cwiseMin(last);
     const Eigen::Vector2i end = first.cwiseMax(last);
     for (int x = begin.x(); x <= end.x(); ++x) {
       for (int y = begin.y(); y <= end.y(); ++y) {
-        Numbering numbering;
+        DiscNumbering numbering;
         size_t found = 0;
         for (const Eigen::Vector2i& place : places) {
           const auto blob = blobs.find({place.x() + x, place.y() + y});
@@ -139,7 +153,7 @@ std::vector<Numbering> NumberingsOf(const std::vector<LatticeNode>& nodes,
 }
 
 // The affine map from the board to the image that fits best: 2 x 3, of (x, y, 1).
-Eigen::Matrix<double, 2, 3> AffineFit(const Numbering& numbering,
+Eigen::Matrix<double, 2, 3> AffineFit(const DiscNumbering& numbering,
                                       const std::vector<Eigen::Vector2d>& points,
                                       const Eigen::Matrix3Xd& points_g) {
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
@@ -155,7 +169,7 @@ Eigen::Matrix<double, 2, 3> AffineFit(const Numbering& numbering,
 }
 
 struct Grid {
-  Numbering numbering;
+  DiscNumbering numbering;
   Eigen::Matrix<double, 2, 3> affine;
 };
 
@@ -176,18 +190,24 @@ std::optional<BoardView> FindCircleGrid(const GreyImage& image, const CircleGrid
     return !is_taken[static_cast<size_t>(to)] && ratio <= kMaxAreaRatio &&
            ratio * kMaxAreaRatio >= 1.0;
   };
+  const size_t max_nodes = static_cast<size_t>(points_g.cols()) + MaxLeftOver(board);
+  std::vector<int> num_walls(blobs.size(), 0);
   std::vector<Grid> grids;
   int num_mirrored = 0;
   for (size_t k = 0; k < blobs.size(); ++k) {
-    if (is_taken[k]) continue;
+    if (is_taken[k] || num_walls[k] >= kMaxWalls) continue;
     const std::optional<LatticeSeed> seed = SeedAt(static_cast<int>(k), blobs, points, index);
     if (!seed) continue;
     const std::vector<LatticeNode> nodes = GrowLattice(points, index, *seed, may_be_neighbours);
-    const std::vector<Numbering> numberings = NumberingsOf(nodes, board);
-    if (numberings.empty()) continue;
+    const std::vector<DiscNumbering> numberings = NumberingsOf(nodes, board);
+    if (numberings.empty()) {
+      if (nodes.size() <= max_nodes) continue;
+      for (const LatticeNode& node : nodes) ++num_walls[static_cast<size_t>(node.point)];
+      continue;
+    }
     for (const LatticeNode& node : nodes) is_taken[static_cast<size_t>(node.point)] = true;
     std::optional<Grid> best;
-    for (const Numbering& numbering : numberings) {
+    for (const DiscNumbering& numbering : numberings) {
       const Eigen::Matrix<double, 2, 3> affine = AffineFit(numbering, points, points_g);
       // z of the board points to the camera where x, y are left-handed in (u, v), v being down.
       if (!(affine.leftCols<2>().determinant() < 0.0)) continue;
@@ -205,23 +225,26 @@ std::optional<BoardView> FindCircleGrid(const GreyImage& image, const CircleGrid
   if (grids.empty() && num_mirrored > 0) ++rejected->images_with_mirrored_board;
   if (grids.size() != 1) return std::nullopt;
 
-  const Grid& grid = grids.front();
+  const Eigen::Matrix2Xd board_points = points_g.topRows<2>();
+  const auto [numbering, num_near_border] =
+      Mended(grids.front().numbering, board_points, blobs, index, image.resolution);
   std::vector<Eigen::Index> ids;
-  for (size_t k = 0; k < grid.numbering.size(); ++k) {
-    if (grid.numbering[k] >= 0) ids.push_back(static_cast<Eigen::Index>(k));
+  for (size_t k = 0; k < numbering.size(); ++k) {
+    if (numbering[k] >= 0) ids.push_back(static_cast<Eigen::Index>(k));
   }
   const auto count = static_cast<Eigen::Index>(ids.size());
-  rejected->corners_of_bad_fit += static_cast<int>(points_g.cols() - count);
+  rejected->corners_near_border += num_near_border;
+  rejected->corners_of_bad_fit += static_cast<int>(points_g.cols() - count) - num_near_border;
   Eigen::Matrix2Xd pixels(2, count);
   Eigen::VectorXd areas(count);
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int blob = grid.numbering[static_cast<size_t>(ids[static_cast<size_t>(i)])];
+    const int blob = numbering[static_cast<size_t>(ids[static_cast<size_t>(i)])];
     pixels.col(i) = points[static_cast<size_t>(blob)];
     areas(i) = blobs[static_cast<size_t>(blob)].area;
   }
   if (count < 8) return std::nullopt;
   const std::vector<std::optional<Eigen::Vector2d>> centres =
-      FindDiscCentres(image, points_g(Eigen::seqN(0, 2), ids), pixels, areas, rejected);
+      FindDiscCentres(image, board_points(Eigen::all, ids), pixels, areas, rejected);
   std::vector<std::optional<Eigen::Vector2d>> corners(static_cast<size_t>(points_g.cols()));
   for (size_t i = 0; i < ids.size(); ++i) corners[static_cast<size_t>(ids[i])] = centres[i];
   std::optional<BoardView> view = ViewOf(corners, points_g);

@@ -1,11 +1,15 @@
 #include "calibrato/detection/local_map.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <numeric>
-#include <opencv2/calib3d.hpp>
+#include <utility>
+
+#include "calibrato/detection/homography.h"
+#include "calibrato/detection/lattice.h"
 
 namespace calibrato {
 namespace {
@@ -15,22 +19,6 @@ constexpr Eigen::Index kMinNeighbours = 7;   // for a quadratic polynomial
 // For a cubic one, without which the second derivatives at a board's corners, where all neighbours
 // are on one side, would be those of a place farther in.
 constexpr Eigen::Index kMinNeighboursForCubic = 16;
-
-Eigen::Matrix3d FitHomography(const Eigen::Matrix2Xd& board, const Eigen::Matrix2Xd& pixels) {
-  std::vector<cv::Point2d> from;
-  std::vector<cv::Point2d> to;
-  for (Eigen::Index k = 0; k < board.cols(); ++k) {
-    from.emplace_back(board(0, k), board(1, k));
-    to.emplace_back(pixels(0, k), pixels(1, k));
-  }
-  const cv::Mat fitted = cv::findHomography(from, to, 0);
-  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-  if (fitted.empty()) return H;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) H(row, column) = fitted.at<double>(row, column);
-  }
-  return H;
-}
 
 // The homography to second order around a point.
 LocalMap Expand(const Eigen::Matrix3d& H, const Eigen::Vector2d& point) {
@@ -47,6 +35,52 @@ LocalMap Expand(const Eigen::Matrix3d& H, const Eigen::Vector2d& point) {
   map.second.col(2) = -2.0 * J.col(1) * g(1);
   return map;
 }
+
+// Finds a point's neighbours on the board without looking at all points.
+class Neighbourhoods {
+ public:
+  // PointIndex thinks in pixels: the points are put about kSpacing apart.
+  explicit Neighbourhoods(const Eigen::Matrix2Xd& board)
+      : board_(board), points_(Spread(board)), index_(points_) {}
+
+  // The `count` nearest ones, itself included, the nearest first; of equals the first.
+  std::vector<Eigen::Index> Nearest(Eigen::Index k, Eigen::Index count) const {
+    std::vector<Eigen::Index> near;
+    const Eigen::Vector2d& here = points_[static_cast<size_t>(k)];
+    // What lies within the radius is complete.
+    for (double radius = kSpacing * std::sqrt(static_cast<double>(count) / 2.0);; radius *= 1.5) {
+      near.clear();
+      index_.VisitNear(here, radius, [&](int other) {
+        if ((points_[static_cast<size_t>(other)] - here).norm() <= radius) near.push_back(other);
+      });
+      if (static_cast<Eigen::Index>(near.size()) >= count) break;
+    }
+    const auto is_nearer = [&](Eigen::Index a, Eigen::Index b) {
+      const double to_a = (board_.col(a) - board_.col(k)).squaredNorm();
+      const double to_b = (board_.col(b) - board_.col(k)).squaredNorm();
+      return to_a != to_b ? to_a < to_b : a < b;
+    };
+    std::partial_sort(near.begin(), near.begin() + count, near.end(), is_nearer);
+    near.resize(static_cast<size_t>(count));
+    return near;
+  }
+
+ private:
+  static constexpr double kSpacing = 10.0;
+
+  static std::vector<Eigen::Vector2d> Spread(const Eigen::Matrix2Xd& board) {
+    const Eigen::Vector2d extent = board.rowwise().maxCoeff() - board.rowwise().minCoeff();
+    const double scale =
+        kSpacing * std::sqrt(static_cast<double>(board.cols())) / extent.maxCoeff();
+    std::vector<Eigen::Vector2d> points;
+    for (Eigen::Index k = 0; k < board.cols(); ++k) points.emplace_back(scale * board.col(k));
+    return points;
+  }
+
+  const Eigen::Matrix2Xd& board_;
+  const std::vector<Eigen::Vector2d> points_;
+  const PointIndex index_;
+};
 
 constexpr int kNumQuadratic = 6;
 constexpr int kNumTerms = 10;
@@ -72,29 +106,40 @@ double LocalMap::CurvatureAlong(const Eigen::Vector2d& direction) const {
   return normal.dot(bend) / squared_length;
 }
 
+Eigen::Vector2d LocalMap::CentroidOffset(double radius) const {
+  const Eigen::Matrix2d inverse = J_pixel_board.inverse();
+  Eigen::Matrix2d J_x;
+  J_x << second.col(0), second.col(1);
+  Eigen::Matrix2d J_y;
+  J_y << second.col(1), second.col(2);
+  const Eigen::Vector2d gradient((inverse * J_x).trace(), (inverse * J_y).trace());
+  const double r2 = radius * radius;
+  return r2 / 8.0 * (second.col(0) + second.col(2)) + r2 / 4.0 * (J_pixel_board * gradient);
+}
+
 std::vector<LocalMap> FitLocalMaps(const Eigen::Matrix2Xd& board, const Eigen::Matrix2Xd& pixels) {
-  const Eigen::Index n = board.cols();
-  assert(n >= 4 && pixels.cols() == n);
   const Eigen::Matrix3d H = FitHomography(board, pixels);
-  Eigen::Matrix2Xd left_over(2, n);
   std::vector<LocalMap> maps;
+  for (Eigen::Index k = 0; k < board.cols(); ++k) maps.push_back(Expand(H, board.col(k)));
+  return WithLeftOver(board, pixels, std::move(maps));
+}
+
+std::vector<LocalMap> WithLeftOver(const Eigen::Matrix2Xd& board, const Eigen::Matrix2Xd& pixels,
+                                   std::vector<LocalMap> maps) {
+  const Eigen::Index n = board.cols();
+  assert(n >= 4 && pixels.cols() == n && maps.size() == static_cast<size_t>(n));
+  Eigen::Matrix2Xd left_over(2, n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    maps.push_back(Expand(H, board.col(k)));
-    left_over.col(k) = pixels.col(k) - maps.back().pixel;
+    left_over.col(k) = pixels.col(k) - maps[static_cast<size_t>(k)].pixel;
   }
-  std::vector<Eigen::Index> order(static_cast<size_t>(n));
+  const Neighbourhoods neighbourhoods(board);
+  const Eigen::Index count = std::min(n, kMaxNeighbours + 1);
   for (Eigen::Index k = 0; k < n; ++k) {
     LocalMap& map = maps[static_cast<size_t>(k)];
     map.pixel = pixels.col(k);
-    const Eigen::Index count = std::min(n, kMaxNeighbours + 1);
     if (count < kMinNeighbours + 1) continue;
-    const Eigen::RowVectorXd distances = (board.colwise() - board.col(k)).colwise().squaredNorm();
-    std::iota(order.begin(), order.end(), 0);
-    const auto is_nearer = [&](Eigen::Index a, Eigen::Index b) {
-      return distances(a) != distances(b) ? distances(a) < distances(b) : a < b;
-    };
-    std::partial_sort(order.begin(), order.begin() + count, order.end(), is_nearer);
-    const double scale = 1.0 / std::sqrt(distances(order[static_cast<size_t>(count - 1)]));
+    const std::vector<Eigen::Index> nearest = neighbourhoods.Nearest(k, count);
+    const double scale = 1.0 / (board.col(nearest.back()) - board.col(k)).norm();
     Eigen::Matrix<double, kNumTerms, kNumTerms> normal =
         1e-9 * Eigen::Matrix<double, kNumTerms, kNumTerms>::Identity();
     if (count < kMinNeighboursForCubic + 1) {
@@ -102,8 +147,7 @@ std::vector<LocalMap> FitLocalMaps(const Eigen::Matrix2Xd& board, const Eigen::M
       normal.diagonal().tail<kNumTerms - kNumQuadratic>().setConstant(1e6);
     }
     Eigen::Matrix<double, kNumTerms, 2> right = Eigen::Matrix<double, kNumTerms, 2>::Zero();
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index neighbour = order[static_cast<size_t>(i)];
+    for (const Eigen::Index neighbour : nearest) {
       const Terms terms = CubicTerms(scale * (board.col(neighbour) - board.col(k)));
       normal += terms * terms.transpose();
       right += terms * left_over.col(neighbour).transpose();

@@ -90,5 +90,31 @@ TEST(LocalMap, KnowsHowAStraightLineBends) {
   EXPECT_NEAR(maps[27].CurvatureAlong(Eigen::Vector2d::UnitY()), 0.0, 1e-4);
 }
 
+TEST(LocalMap, KnowsTheCentroidOfADiscsImage) {
+  // u = x + x^2/2, v = y over a disc of radius r: du dv = (1 + x) dx dy, so the mean of u is
+  // (<x^2> + <x^2>/2) / 1 = 3/2 * r^2/4, since <x> = <x^3> = 0; that of v is 0.
+  LocalMap map;
+  map.J_pixel_board.setIdentity();
+  map.second.col(0) = Eigen::Vector2d::UnitX();
+  constexpr double kRadius = 0.2;
+  EXPECT_NEAR(map.CentroidOffset(kRadius).x(), 0.375 * kRadius * kRadius, 1e-12);
+  EXPECT_NEAR(map.CentroidOffset(kRadius).y(), 0.0, 1e-12);
+}
+
+TEST(LocalMap, FindsNeighboursOnAnyBoard) {
+  // In one long row of pairs, and where there are hardly more points than neighbours asked for.
+  for (const int length : {10, 300}) {
+    Eigen::Matrix2Xd board(2, 2 * length);
+    Eigen::Matrix2Xd pixels(2, 2 * length);
+    for (int k = 0; k < 2 * length; ++k) {
+      board.col(k) << 0.05 * (k % 2), 0.01 * (k / 2);
+      pixels.col(k) = Perspective(board.col(k));
+    }
+    for (const LocalMap& map : FitLocalMaps(board, pixels)) EXPECT_LT(map.surprise, 1e-3);
+    pixels(0, 7) += 3.0;
+    EXPECT_NEAR(FitLocalMaps(board, pixels)[7].surprise, 3.0, 0.5);
+  }
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "calibrato/diagnosis/better_model.h"
@@ -24,12 +25,35 @@ constexpr double kBeyondDoubt = 1e-6;
 constexpr double kBentDepth = 3e-4;  // Of the board's diagonal [-].
 constexpr double kStretched = 2e-3;  // [-], [rad]
 
+// "only 2 of 8 views fit one lens: 2 left out as 'too few corners', 4 left out as 'does not fit'"
+Finding TooFewFit(const CameraProblem& problem, const CameraCalibration& calibration) {
+  const auto count = [&](ViewRejection reason) {
+    return std::count_if(calibration.rejected_views.begin(), calibration.rejected_views.end(),
+                         [reason](const RejectedView& view) { return view.reason == reason; });
+  };
+  std::string reasons;
+  for (const ViewRejection reason :
+       {ViewRejection::kTooFewCorners, ViewRejection::kNoPose, ViewRejection::kDoesNotFit}) {
+    if (count(reason) == 0) continue;
+    reasons += (reasons.empty() ? "" : ", ") + std::to_string(count(reason)) + " left out as '" +
+               ViewRejectionName(reason) + "'";
+  }
+  return {Severity::kFail,
+          "only " + std::to_string(problem.views.size() - calibration.rejected_views.size()) +
+              " of " + std::to_string(problem.views.size()) + " views fit one lens: " + reasons,
+          "look at their corners: was the board found where it is? Are its rows, columns and "
+          "spacing right? Take at least " +
+              std::to_string(kMinViews) + " good views, better twenty"};
+}
+
 void AddTermination(const CameraProblem& problem, const CameraCalibration& calibration,
                     std::vector<Finding>* findings) {
   switch (calibration.termination) {
     case Termination::kConverged:
+    case Termination::kNotTried:
       return;
     case Termination::kIterationLimit:
+    case Termination::kNoStepHelps:
       findings->push_back({Severity::kFail, "the solver did not converge",
                            "look for views whose corners are wrong, or use a model with fewer "
                            "parameters"});
@@ -46,6 +70,8 @@ void AddTermination(const CameraProblem& problem, const CameraCalibration& calib
             {Severity::kFail,
              "only " + std::to_string(problem.views.size()) + " views show the board",
              "take at least " + std::to_string(kMinViews) + ", better twenty"});
+      } else if (!calibration.rejected_views.empty()) {
+        findings->push_back(TooFewFit(problem, calibration));
       } else {
         findings->push_back({Severity::kFail, "no focal length fits the views",
                              "check the board's rows, columns and spacing"});
@@ -79,6 +105,50 @@ void AddFocalLengths(const CameraCalibration& calibration, std::vector<Finding>*
                 100.0 * std::abs(difference), difference > 0.0 ? "longer" : "shorter"),
          "measure the board: are its rows as far apart as its target file says, and its columns? "
          "was the image squeezed?"});
+  }
+}
+
+// sigma(f) / f of the fit in which nothing was held at its estimate; infinite where the views leave
+// something undetermined.
+double FreeFocalSigma(const CameraCalibration& calibration) {
+  const Eigen::VectorXd& sigmas = calibration.free_fit->sigmas;
+  if (sigmas.size() == 0) return std::numeric_limits<double>::infinity();
+  const int focal = CameraModel::FocalIndex(calibration.model->name());
+  const Eigen::Vector2d f = calibration.model->focal_and_centre().head<2>();
+  return sigmas.segment<2>(focal).cwiseQuotient(f).maxCoeff();
+}
+
+// A value from views that do not have it: every other sigma would take it for true.
+void AddVagueEstimate(const CameraCalibration& calibration, const std::string& name,
+                      std::vector<Finding>* findings) {
+  const double sigma = FreeFocalSigma(calibration);
+  if (sigma <= kMaxFocalSigma) return;
+  const std::string free = name + " is held at what these views say, but where it is free, ";
+  findings->push_back(
+      {Severity::kFail,
+       std::isfinite(sigma)
+           ? free + Format("the focal length is known to %.2g %% only (one sigma; 1 %% is the "
+                           "limit)",
+                           100.0 * sigma)
+           : free + "the views do not determine the camera",
+       "give its value, as --fix " + name + "=VALUE; or add views tilted by 20 to 45 degrees"});
+}
+
+// What is held without a value of its own.
+void AddHeld(const CameraProblem& problem, const CameraCalibration& calibration,
+             std::vector<Finding>* findings) {
+  const std::vector<std::string> names = CameraModel::ParameterNames(problem.model);
+  const std::vector<bool> at_estimate = HeldAtTheirEstimate(problem);
+  for (size_t i = 0; i < problem.fixed.size(); ++i) {
+    if (calibration.free_fit && at_estimate[i]) AddVagueEstimate(calibration, names[i], findings);
+    const auto index = static_cast<Eigen::Index>(i);
+    if (!problem.fixed[i] || !std::isnan(problem.known(index))) continue;
+    findings->push_back(
+        {Severity::kInfo,
+         names[i] + " is held at " + Format("%.5g, ", calibration.model->parameters()(index)) +
+             (at_estimate[i] ? "which these views say themselves: the other sigmas take it for true"
+                             : "the middle of the image"),
+         "to hold a value that you know, write --fix " + names[i] + "=VALUE"});
   }
 }
 
@@ -221,6 +291,7 @@ CameraDiagnosis DiagnoseCamera(const CameraProblem& problem, const CameraCalibra
   CameraDiagnosis diagnosis;
   std::vector<Finding>& findings = diagnosis.findings;
   AddTermination(problem, calibration, &findings);
+  if (calibration.model) AddHeld(problem, calibration, &findings);
   if (calibration.covariance.size() != 0) AddFocalLengths(calibration, &findings);
   Append(FindingsOnBoardPoses(problem, calibration), &findings);
   Append(FindingsOnCorners(problem, calibration), &findings);

@@ -76,6 +76,57 @@ TEST(DiagnoseCamera, FailsWithTwoViews) {
   EXPECT_TRUE(Find(diagnosis, "only 2 views")) << Text(diagnosis);
 }
 
+TEST(DiagnoseCamera, CountsWhyViewsFitNoLens) {
+  CameraProblem problem = MakeProblem(5, 0.1, 14);
+  Rng rng(15);
+  for (const size_t v : {0U, 2U}) {
+    for (double& x : problem.views[v].pixels.reshaped()) x = rng.Uniform(0.0, 400.0);
+  }
+  BoardView& few = problem.views[4];
+  few.corner_ids.resize(3);
+  few.pixels = few.pixels.leftCols<3>().eval();
+  few.points_g = few.points_g.leftCols<3>().eval();
+  const CameraDiagnosis diagnosis = Diagnose(problem);
+  EXPECT_EQ(VerdictOf(diagnosis.findings), Verdict::kFail);
+  EXPECT_TRUE(Find(diagnosis, "only 2 of 5 views fit one lens")) << Text(diagnosis);
+  EXPECT_TRUE(Find(diagnosis, "1 left out as 'too few corners'")) << Text(diagnosis);
+  EXPECT_TRUE(Find(diagnosis, "2 left out as '")) << Text(diagnosis);
+}
+
+TEST(DiagnoseCamera, SaysAtWhatAParameterIsHeld) {
+  CameraProblem problem = MakeProblem(40, 0.1, 16);
+  HoldParameters({"fv", "pu", "k2"}, &problem);
+  const CameraDiagnosis diagnosis = Diagnose(problem);
+  EXPECT_TRUE(Find(diagnosis, "fv is held at 589")) << Text(diagnosis);
+  EXPECT_TRUE(Find(diagnosis, "pu is held at 319.5, the middle of the image")) << Text(diagnosis);
+  EXPECT_FALSE(Find(diagnosis, "k2 is held")) << Text(diagnosis);
+}
+
+// Nearly frontal views do not tell the focal length: to hold what they say makes it no better
+// known.
+TEST(DiagnoseCamera, FailsWhereAFocalLengthIsHeldAtAVagueEstimate) {
+  std::vector<Rigid3> poses;
+  Rng rng(18);
+  for (int k = 0; k < 12; ++k) {
+    const Eigen::Vector3d tilt(rng.Uniform(-0.03, 0.03), rng.Uniform(-0.03, 0.03),
+                               rng.Uniform(-0.4, 0.4));
+    poses.push_back(
+        Pose({rng.Uniform(-0.2, 0.2), rng.Uniform(-0.15, 0.15), rng.Uniform(0.8, 1.4)}, tilt));
+  }
+  CameraProblem problem = ProblemFrom(poses, Rng(19));
+  ASSERT_TRUE(Find(Diagnose(problem), "the focal length is known to"));
+  HoldParameters({"fu"}, &problem);
+  const CameraDiagnosis held = Diagnose(problem);
+  EXPECT_EQ(VerdictOf(held.findings), Verdict::kFail) << Text(held);
+  const Finding* finding = Find(held, "fu is held at what these views say");
+  ASSERT_TRUE(finding) << Text(held);
+  EXPECT_EQ(finding->severity, Severity::kFail);
+  EXPECT_NE(finding->remedy.find("--fix fu=VALUE"), std::string::npos) << finding->remedy;
+  // With its value known there is nothing vague.
+  HoldParameters({"fu=585"}, &problem);
+  EXPECT_FALSE(Find(Diagnose(problem), "fu is held"));
+}
+
 TEST(DiagnoseCamera, FailsWhereTheFocalLengthIsVague) {
   const CameraDiagnosis diagnosis = Diagnose(MakeProblem(3, 8.0, 3));
   EXPECT_EQ(VerdictOf(diagnosis.findings), Verdict::kFail);
@@ -101,6 +152,25 @@ TEST(DiagnoseCamera, NamesThePartOfTheImageThatWasNeverCovered) {
     return is_top_left.any();
   });
   const CameraDiagnosis diagnosis = Diagnose(problem);
+  EXPECT_TRUE(Find(diagnosis, "the top left of the image was never covered")) << Text(diagnosis);
+}
+
+TEST(DiagnoseCamera, DoesNotTakeAViewThatDoesNotFitForCover) {
+  CameraProblem problem = MakeProblem(80, 0.1, 6);
+  std::erase_if(problem.views, [](const BoardView& view) {
+    const auto is_top_left =
+        view.pixels.row(0).array() < 215.0 && view.pixels.row(1).array() < 162.0;
+    return is_top_left.any();
+  });
+  BoardView wrong = problem.views.front();
+  Rng rng(17);
+  for (Eigen::Index k = 0; k < wrong.num_corners(); ++k) {
+    wrong.pixels.col(k) << rng.Uniform(0.0, 200.0), rng.Uniform(0.0, 150.0);
+  }
+  problem.views.push_back(wrong);
+  const CameraDiagnosis diagnosis = Diagnose(problem);
+  const std::string left_out = "1 of " + std::to_string(problem.views.size()) + " views";
+  EXPECT_TRUE(Find(diagnosis, left_out)) << Text(diagnosis);
   EXPECT_TRUE(Find(diagnosis, "the top left of the image was never covered")) << Text(diagnosis);
 }
 

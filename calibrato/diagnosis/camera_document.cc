@@ -9,6 +9,7 @@
 #include "calibrato/diagnosis/camera_drawings.h"
 #include "calibrato/diagnosis/checks_document.h"
 #include "calibrato/geometry/so3.h"
+#include "calibrato/sensors/board_symmetry.h"
 #include "calibrato/sensors/camera_chain.h"
 
 namespace calibrato {
@@ -123,7 +124,14 @@ Value CameraValue(const CameraRigReport& report, size_t c,
   value.Set("rejected", RejectedValue(report.cameras[c], calibration));
   const bool related = c > 0 && report.calibration.T_cn_cnm1[c - 1].has_value();
   value.Set("T_cn_cnm1", related ? ToValue(*report.calibration.T_cn_cnm1[c - 1]) : Value());
-  if (c > 0) value.Set("num_shared_frames", report.calibration.num_shared_frames[c - 1]);
+  if (c > 0) {
+    value.Set("num_shared_frames", report.calibration.num_shared_frames[c - 1]);
+    if (const auto& earlier = report.calibration.earlier_relations[c - 1]) {
+      value.Set("earlier_relation", Value::Object()
+                                        .Set("camera", "cam" + std::to_string(earlier->camera))
+                                        .Set("T_cn_camera", ToValue(earlier->T_cn_camera)));
+    }
+  }
   value.Set("termination", TerminationName(calibration.termination))
       .Set("coverage", CoverageValue(calibration.coverage))
       .Set("information", InformationValue(calibration))
@@ -169,6 +177,19 @@ std::vector<Finding> AllFindings(const CameraRigReport& report) {
   return all;
 }
 
+// "  from cam0: 0.10000 0.00000 0.00000 m, turned by 0.01000 rad (13 shared frames)"
+std::string RelationText(const CameraRigCalibration& calibration, size_t c) {
+  const std::optional<EarlierRelation>& earlier = calibration.earlier_relations[c - 1];
+  const std::optional<Rigid3>& neighbour = calibration.T_cn_cnm1[c - 1];
+  if (!earlier && !neighbour) return "";
+  const Rigid3& T = neighbour ? *neighbour : earlier->T_cn_camera;
+  std::string text = Format("  from cam%zu: %.5f %.5f %.5f m, turned by %.5f rad",
+                            neighbour ? c - 1 : static_cast<size_t>(earlier->camera), T.t.x(),
+                            T.t.y(), T.t.z(), LogSo3(T.R).norm());
+  if (neighbour) text += Format(" (%d shared frames)", calibration.num_shared_frames[c - 1]);
+  return text + "\n";
+}
+
 // "  left out: 3 corners; 1 view: left07.jpg (does not fit)"
 std::string RejectedText(const CameraCalibration& calibration) {
   std::vector<std::string> parts;
@@ -190,18 +211,56 @@ std::string RejectedText(const CameraCalibration& calibration) {
   return text + "\n";
 }
 
+std::string Listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
+// A camera that is not related to the one before it. What kept one from being calibrated is said
+// elsewhere.
+void AddRelation(const CameraRigCalibration& calibration, size_t n,
+                 std::vector<Finding>* findings) {
+  if (calibration.T_cn_cnm1[n - 1] || !calibration.cameras[n].model) return;
+  const std::string before = "cam" + std::to_string(n - 1);
+  const std::string name = "cam" + std::to_string(n);
+  const bool is_calibrated = calibration.cameras[n - 1].model.has_value();
+  const std::string why =
+      is_calibrated ? before + " and " + name + " share no frame in which both saw the board"
+                    : before + " could not be calibrated";
+  if (const std::optional<EarlierRelation>& earlier = calibration.earlier_relations[n - 1]) {
+    const std::string other = "cam" + std::to_string(earlier->camera);
+    findings->push_back({Severity::kInfo,
+                         why + ": the place of " + name + " is given from " + other +
+                             " instead (earlier_relation in result.json)",
+                         ""});
+    return;
+  }
+  findings->push_back(
+      {Severity::kWarn, why + ": where " + name + " is from " + before + " is not known",
+       is_calibrated ? "show the board where their images overlap; are their clocks the same?"
+                     : "mend what is wrong with " + before});
+}
+
 }  // namespace
 
-std::vector<Finding> RigFindings(const CameraRigCalibration& calibration) {
+std::vector<Finding> RigFindings(const CameraRigCalibration& calibration,
+                                 const std::optional<Board>& board) {
   std::vector<Finding> findings;
-  for (size_t n = 1; n < calibration.cameras.size(); ++n) {
-    if (calibration.T_cn_cnm1[n - 1]) continue;
-    const std::string pair = "cam" + std::to_string(n - 1) + " and cam" + std::to_string(n);
+  for (size_t n = 1; n < calibration.cameras.size(); ++n) AddRelation(calibration, n, &findings);
+  for (const std::vector<int>& group : calibration.groups_of_unknown_side) {
+    std::vector<std::string> names;
+    for (const int camera : group) names.push_back("cam" + std::to_string(camera));
     findings.push_back(
         {Severity::kWarn,
-         pair + " share no frame in which both saw the board: where one is from the other is not "
-                "known, and each was calibrated on its own",
-         "show the board where their images overlap; are their clocks the same?"});
+         "the board looks the same from several sides, and the frames that " + Listed(names) +
+             " share do not tell from which each of them saw it: taken is where the cameras are "
+             "turned least against each other",
+         "show them the board together in several poses" +
+             (board ? ", or " + SidedBoardAdvice(*board) : std::string())});
   }
   if (calibration.num_separated_views > 0) {
     findings.push_back(
@@ -234,10 +293,13 @@ Value CameraResult(const CameraRigReport& report) {
   const auto housed = HouseCameras(report.problem, report.calibration);
   Value list = Value::Array();
   Coverage least{1.0, 1.0, 1.0, 1.0};
+  bool is_any = false;
   const CameraCalibration* weakest = &report.calibration.cameras.front();
   for (size_t c = 0; c < report.cameras.size(); ++c) {
     const CameraCalibration& calibration = report.calibration.cameras[c];
     list.Append(CameraValue(report, c, housed[c]));
+    if (!calibration.model) continue;
+    is_any = true;
     least.x = std::min(least.x, calibration.coverage.x);
     least.y = std::min(least.y, calibration.coverage.y);
     least.size = std::min(least.size, calibration.coverage.size);
@@ -253,7 +315,7 @@ Value CameraResult(const CameraRigReport& report) {
       .Set("findings", ToValue(AllFindings(report)))
       .Set("cameras", std::move(list))
       .Set("covariance", CovarianceValue(report.calibration))
-      .Set("coverage", CoverageValue(least))
+      .Set("coverage", CoverageValue(is_any ? least : Coverage()))
       .Set("information", InformationValue(*weakest));
   if (report.calibration.bending) {
     result.Set("board_bending", BendingValue(*report.calibration.bending));
@@ -331,14 +393,7 @@ std::string CameraText(const CameraRigReport& report) {
       }
       text += line;
     }
-    if (c > 0 && report.calibration.T_cn_cnm1[c - 1]) {
-      const Rigid3& T = *report.calibration.T_cn_cnm1[c - 1];
-      std::snprintf(line, sizeof(line),
-                    "  from cam%zu: %.5f %.5f %.5f m, turned by %.5f rad (%d shared frames)\n",
-                    c - 1, T.t.x(), T.t.y(), T.t.z(), LogSo3(T.R).norm(),
-                    report.calibration.num_shared_frames[c - 1]);
-      text += line;
-    }
+    if (c > 0) text += RelationText(report.calibration, c);
   }
   const std::vector<Finding> findings = AllFindings(report);
   text += "verdict: " + std::string(VerdictName(VerdictOf(findings))) + "\n";

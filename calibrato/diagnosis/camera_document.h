@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "calibrato/detection/rejection.h"
 #include "calibrato/diagnosis/camera_diagnosis.h"
 #include "calibrato/diagnosis/finding.h"
+#include "calibrato/sensors/board.h"
 
 namespace calibrato {
 
@@ -29,12 +31,15 @@ struct CameraRigReport {
 
 /// What is worth saying of several cameras together: neighbours that could not be related, views
 /// that did not fit the others of their frame, a bent board where its bending was estimated.
-[[nodiscard]] std::vector<Finding> RigFindings(const CameraRigCalibration& calibration);
+/// @param board  Where it is known: what to use instead of one that looks the same from several
+/// sides.
+[[nodiscard]] std::vector<Finding> RigFindings(const CameraRigCalibration& calibration,
+                                               const std::optional<Board>& board);
 
 /// result.json of `calibrate camera` (docs/formats.md section 3). Coverage is the least of the
-/// cameras', information that of the camera with the largest a_optimality; with several cameras,
-/// findings name theirs. Beyond the formats, each camera has `rejected` (what was left out and
-/// why), `projection_uncertainty` and `checks` (checks_document.h).
+/// calibrated cameras', information that of the camera with the largest a_optimality; with several
+/// cameras, findings name theirs. Beyond the formats, each camera has `rejected` (what was left out
+/// and why), `projection_uncertainty` and `checks` (checks_document.h).
 [[nodiscard]] Value CameraResult(const CameraRigReport& report);
 
 /// What the report draws of one camera: corners, residuals, poses, the lens's curve. At most 200

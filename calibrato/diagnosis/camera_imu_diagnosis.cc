@@ -7,6 +7,7 @@
 
 #include "calibrato/calibration/camera_imu_layout.h"
 #include "calibrato/diagnosis/board_scale_check.h"
+#include "calibrato/diagnosis/turning_advice.h"
 
 namespace calibrato {
 namespace {
@@ -29,18 +30,14 @@ constexpr Kind kTimeOffset = {"time offset", "", "ms", 1e-3, 0.005, 0.0005};
 
 constexpr double kTooLargeResiduals = 3.0;  // Over the stated noise [-].
 constexpr double kNoisyResiduals = 1.5;
-constexpr double kDisagreement = 3.0;   // Of halves, in sigmas.
-constexpr double kLargeChange = 0.5;    // With finer knots, in sigmas.
-constexpr double kHardlyTurned = 0.05;  // [rad/s]
-constexpr double kManyOutside = 0.05;   // Of all measurements; a few always are.
+constexpr double kDisagreement = 3.0;  // Of halves, in sigmas.
+constexpr double kLargeChange = 0.5;   // With finer knots, in sigmas.
+constexpr double kManyOutside = 0.05;  // Of all measurements; a few always are.
 constexpr int kNumKnowledge = 16;
 constexpr int kNumParts = 4;  // Whose scatter is looked at.
 constexpr size_t kNamesToList = 3;
 
 constexpr std::array<const char*, 3> kAxes = {"x", "y", "z"};
-// What a hand does to turn the camera about its axes.
-constexpr std::array<const char*, 3> kTurns = {"x (look up and down)", "y (look left and right)",
-                                               "z (roll)"};
 
 Verdict VerdictOfSigma(const Kind& kind, double sigma) {
   if (!(sigma <= kind.inconclusive)) return Verdict::kInconclusive;
@@ -62,26 +59,19 @@ Eigen::Vector3d TurningOf(const CameraImuProblem& problem, const CameraImuState&
   return (squared / std::max<size_t>(1, gyro.size())).cwiseSqrt();
 }
 
-// A lever arm along an axis, and a rotation about it, show when the rig turns about another axis:
-// the slower of the two others is the one to work on.
-std::string AdviceFor(int axis, const Eigen::Vector3d& turning) {
-  const int one = (axis + 1) % 3;
-  const int other = (axis + 2) % 3;
-  const int slower = turning(one) < turning(other) ? one : other;
-  const char* turn = kTurns[size_t(slower)];
-  if (turning(slower) < kHardlyTurned) {
-    return Format("turn the camera to and fro about its %s, which it hardly did", turn);
-  }
-  return Format("turn the camera to and fro about its %s faster; so far %.2f rad/s on average",
-                turn, turning(slower));
-}
-
 std::string Listed(const std::vector<std::string>& names) {
   std::string text;
   for (size_t k = 0; k < std::min(names.size(), kNamesToList); ++k) {
     text += (k == 0 ? "" : ", ") + names[k];
   }
   return names.size() > kNamesToList ? text + ", .." : text;
+}
+
+// "5.015, 10.000, .. s after the beginning"
+std::string ListedTimes(const std::vector<LeftOut>& left_out) {
+  std::vector<std::string> times;
+  for (const LeftOut& one : left_out) times.push_back(Format("%.3f", one.time_s));
+  return Listed(times) + " s after the beginning";
 }
 
 // "x (38 mm), y (44 mm)"; a sigma that does not exist is left out.
@@ -118,7 +108,7 @@ void AddFindings(const std::string& camera, const Kind& kind, const ParameterVer
     findings->push_back(
         {severity,
          camera + ": the " + kind.what + kind.preposition + AxesWithSigmas(kind, axes, three) + is,
-         AdviceFor(worst, turning)});
+         AdviceOnTurning(worst, turning)});
   };
   add(Severity::kInconclusive, unobservable, " is not observable in this motion");
   add(Severity::kInconclusive, undetermined, " is not determined (one sigma)");
@@ -203,13 +193,13 @@ void JudgeSamples(const std::string& imu, const std::string& sensor,
                 imu.c_str(), sensor.c_str(), residuals.normalised),
          "give --estimate-noise, or the noise densities that the IMU has when it moves"});
   }
-  if (residuals.num_outliers > 0) {
-    findings->push_back({Severity::kInfo,
-                         Format("%s: %d of %d samples of the %s do not fit and were left out, the "
-                                "first of them %.3f s after the beginning",
-                                imu.c_str(), residuals.num_outliers, residuals.num_samples,
-                                sensor.c_str(), residuals.first_outlier_s),
-                         ""});
+  if (!residuals.outliers.empty()) {
+    findings->push_back(
+        {Severity::kInfo,
+         Format("%s: %zu of %d samples of the %s do not fit and were left out, ", imu.c_str(),
+                residuals.outliers.size(), residuals.num_samples, sensor.c_str()) +
+             ListedTimes(residuals.outliers),
+         ""});
   }
 }
 
@@ -220,7 +210,8 @@ void JudgeCorners(const std::string& camera, const CornerResiduals& residuals,
                          camera +
                              Format(": %zu of %d images do not fit and were left out: ",
                                     residuals.rejected_views.size(), residuals.num_views) +
-                             Listed(residuals.rejected_views),
+                             Listed(residuals.rejected_views) + ", " +
+                             ListedTimes(residuals.rejected),
                          "wrong stamps look like that, and boards that were found wrongly"});
   }
   if (residuals.num_outliers > 0) {
@@ -278,9 +269,8 @@ void AddScatterFinding(const CameraImuScatter& scatter, std::vector<Finding>* fi
 }
 
 // Where the IMUs are not as their model has them, and the result depends on it.
-void JudgeImuModel(const ImuModelComparison& models, bool is_simple,
-                   CameraImuDiagnosis* diagnosis) {
-  if (!is_simple || !models.significance.is_significant()) return;
+void JudgeImuModel(const ImuModelComparison& models, CameraImuDiagnosis* diagnosis) {
+  if (!models.is_simple_used || !models.significance.is_significant()) return;
   const size_t num_parameters = diagnosis->parameters.size() / models.change.size();
   std::string changes;
   for (size_t n = 0; n < models.change.size(); ++n) {
@@ -304,6 +294,39 @@ void JudgeImuModel(const ImuModelComparison& models, bool is_simple,
        "give --imu-model scale-misalignment"});
 }
 
+Finding NoStartFinding(const CameraImuNoStart& none) {
+  using Reason = CameraImuNoStart::Reason;
+  const std::string camera = Name("cam", none.sensor);
+  const std::string imu = Name("imu", none.sensor);
+  switch (none.reason) {
+    case Reason::kNoBoardPoses:
+      return {Severity::kFail,
+              "there is nothing to start from: hardly an image of " + camera +
+                  " tells where the board is",
+              "check the camera's intrinsics and the board's target file"};
+    case Reason::kViewsFarApart:
+      return {Severity::kFail,
+              Format("there is nothing to start from: hardly two images of %s that show the board "
+                     "are less than %.1f s apart",
+                     camera.c_str(), kLongestViewInterval),
+              "record 10 images a second or more, with the board in view; leave out --every"};
+    case Reason::kNoSharedTime:
+      return {Severity::kFail,
+              "there is nothing to start from: " + camera +
+                  " and imu0 recorded at different times, as their clocks have it",
+              "record both at the same time, and give both stamps of one clock"};
+    case Reason::kNoTurning:
+      return {Severity::kFail,
+              "there is nothing to start from: " + camera + " or imu0 never turned",
+              "turn the rig about all axes, with the board in view"};
+    case Reason::kOtherImu:
+      return {Severity::kFail,
+              "there is nothing to start from: " + imu + " and imu0 did not turn at the same times",
+              "check that both are on one rigid body, and that their stamps are of one clock"};
+  }
+  return {};
+}
+
 double NumMeasurements(const CameraImuProblem& problem) {
   size_t number = 0;
   for (const CameraImuCamera& camera : problem.cameras) number += camera.views.size();
@@ -319,9 +342,7 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
                                      const CameraImuCalibration& calibration) {
   CameraImuDiagnosis diagnosis;
   if (!calibration.state) {
-    diagnosis.findings = {
-        {Severity::kFail, "there is nothing to start from: no motion that camera and IMU share",
-         "record both at the same time, with the board in view, and turn the rig about all axes"}};
+    if (calibration.no_start) diagnosis.findings = {NoStartFinding(*calibration.no_start)};
     return diagnosis;
   }
   const CameraImuState& state = *calibration.state;
@@ -331,8 +352,10 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
     diagnosis.findings.push_back(
         {Severity::kFail,
          "the solve did not converge: " + std::string(TerminationName(calibration.termination)),
-         "give --max-iterations more, or look at what the check of the "
-         "recording found"});
+         std::string(calibration.termination == Termination::kIterationLimit
+                         ? "give --max-iterations more, or look"
+                         : "look") +
+             " at what the check of the recording found"});
   }
   const CameraImuLayout layout(problem, state.T_g_i.order());
   if (calibration.termination == Termination::kConverged) {
@@ -362,9 +385,9 @@ CameraImuDiagnosis DiagnoseCameraImu(const CameraImuProblem& problem,
     diagnosis.findings.push_back(BoardScaleFinding(*board));
   } else if (diagnosis.imu_models) {
     // A board of another size looks like scale errors of the IMU.
-    const bool is_simple = problem.imus.front().model == ImuModelKind::kCalibrated;
-    JudgeImuModel(*diagnosis.imu_models, is_simple, &diagnosis);
+    JudgeImuModel(*diagnosis.imu_models, &diagnosis);
   }
+  diagnosis.covariance = CovarianceWithBiases(problem, calibration);
   diagnosis.residuals = SummariseResiduals(problem, calibration);
   JudgeResiduals(*diagnosis.residuals, &diagnosis.findings);
   AddNoiseFindings(problem, calibration.weights, &diagnosis.findings);

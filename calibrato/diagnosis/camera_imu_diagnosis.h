@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrato/calibration/bias_covariance.h"
 #include "calibrato/calibration/camera_imu_calibration.h"
 #include "calibrato/diagnosis/camera_imu_parts.h"
 #include "calibrato/diagnosis/camera_imu_residuals.h"
@@ -31,6 +32,8 @@ struct CameraImuDiagnosis {
   std::optional<CameraImuSplit> split;
   /// Where the motion tells the models apart.
   std::optional<ImuModelComparison> imu_models;
+  /// Of the calibration and the IMUs' mean biases; not scaled; empty without one.
+  NamedCovariance covariance;
   std::vector<CameraImuKnowledge> knowledge;  ///< Over time; empty without a state.
 
   /// By which all stated standard deviations were multiplied.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "calibrato/base/full_sample_for_test.h"
+#include "calibrato/calibration/prediction_error.h"
 #include "calibrato/calibration/synthetic_camera_imu_for_test.h"
 #include "calibrato/diagnosis/camera_imu_document.h"
 #include "calibrato/diagnosis/camera_imu_plots.h"
@@ -14,7 +15,8 @@ namespace calibrato {
 namespace {
 
 CameraImuReport ReportOn(const CameraImuProblem& problem) {
-  CameraImuReport report{problem, CalibrateCameraImu(problem), {}, {}};
+  CameraImuReport report{problem, CalibrateCameraImu(problem), {}, {}, {}};
+  report.resolutions.assign(problem.cameras.size(), SyntheticCameraImu().resolution);
   report.diagnosis = DiagnoseCameraImu(problem, report.calibration);
   return report;
 }
@@ -98,9 +100,28 @@ TEST(DiagnoseCameraImu, CountsWhatWasLeftOut) {
   BoardView& late = problem.cameras[0].views[50];
   late.pixels.row(0).array() += 40.0;
   const CameraImuReport report = ReportOn(problem);
-  EXPECT_EQ(report.diagnosis.residuals->gyros[0].num_outliers, 3);
+  const std::vector<VectorSample>& gyro = problem.imus[0].stream.gyro;
+  const std::vector<LeftOut>& outliers = report.diagnosis.residuals->gyros[0].outliers;
+  ASSERT_EQ(outliers.size(), 3U);
+  EXPECT_EQ(outliers[0].stamp, gyro[500].stamp);
+  EXPECT_EQ(outliers[2].stamp, gyro[900].stamp);
   EXPECT_TRUE(Says(report, Severity::kInfo, "imu0: 3 of"));
   EXPECT_TRUE(Says(report, Severity::kInfo, late.name));
+  // By stamp and by time, in words and in the result.
+  const Time start = report.calibration.state->start;
+  const double spike_s = (gyro[500].stamp - start).seconds();
+  EXPECT_TRUE(Says(report, Severity::kInfo, Format("left out, %.3f, ", spike_s)));
+  const Value result = CameraImuResult(report);
+  const Value& of_gyro = result.At("imus").elements()[0].At("gyro");
+  EXPECT_EQ(of_gyro.At("num_outliers").AsInt(), 3);
+  ASSERT_EQ(of_gyro.At("outlier_stamps_ns").size(), 3U);
+  EXPECT_EQ(of_gyro.At("outlier_stamps_ns").elements()[1].AsInt(), gyro[501].stamp.nanoseconds());
+  EXPECT_NEAR(of_gyro.At("outlier_times_s").AsDoubles()[0], spike_s, 1e-6);
+  const Value& camera = result.At("cameras").elements()[0];
+  ASSERT_EQ(camera.At("rejected_view_stamps_ns").size(), 1U);
+  EXPECT_EQ(camera.At("rejected_view_stamps_ns").elements()[0].AsInt(), late.stamp.nanoseconds());
+  EXPECT_NEAR(camera.At("rejected_view_times_s").AsDoubles()[0],
+              (late.stamp - start).seconds() + camera.At("time_offset_s").AsDouble(), 1e-6);
 }
 
 TEST(DiagnoseCameraImu, SeesThatTheCameraMovedOnTheRigHalfWayThrough) {
@@ -182,6 +203,9 @@ TEST(CompareImuModels, FindsMisalignedAxesFromEitherModel) {
   }
   EXPECT_TRUE(Says(simple, Severity::kWarn, "give --imu-model scale-misalignment"));
   EXPECT_FALSE(Says(rich, Severity::kWarn, "--imu-model"));
+  // For the richer model, whichever was solved.
+  EXPECT_LT(simple.diagnosis.imu_models->qaic_change(), -20.0);
+  EXPECT_LT(rich.diagnosis.imu_models->qaic_change(), -20.0);
   const Eigen::Vector<double, 6> change = rich.calibration.state->cameras[0].T_c_i.DifferenceTo(
       simple.calibration.state->cameras[0].T_c_i);
   EXPECT_LT((simple.diagnosis.imu_models->change[0] - change).norm(), 0.2 * change.norm());
@@ -191,6 +215,7 @@ TEST(CompareImuModels, AreSilentAboutAPerfectImu) {
   const CameraImuReport report = ReportOn(SyntheticCameraImu());
   ASSERT_TRUE(report.diagnosis.imu_models.has_value());
   EXPECT_FALSE(report.diagnosis.imu_models->significance.is_significant());
+  EXPECT_GT(report.diagnosis.imu_models->qaic_change(), 0.0);
 }
 
 TEST(CameraImuResult, HasTheKeysOfTheFormats) {
@@ -209,8 +234,65 @@ TEST(CameraImuResult, HasTheKeysOfTheFormats) {
   EXPECT_EQ(result.At("gravity_g").AsDoubles(3).size(), 3u);
   EXPECT_EQ(result.At("information").At("eigenvalues").AsDoubles(6).size(), 6u);
   EXPECT_NEAR(result.At("residuals").At("accel_normalised").AsDouble(), 1.0, 0.1);
-  const size_t size = result.At("covariance").At("names").size();
-  EXPECT_EQ(result.At("covariance").At("matrix").size(), size);
+  const std::vector<Value>& names = result.At("covariance").At("names").elements();
+  const std::vector<Value>& matrix = result.At("covariance").At("matrix").elements();
+  ASSERT_EQ(matrix.size(), names.size());
+  // Behind the calibration the biases, whose sigmas stand with them.
+  const size_t first = names.size() - 6;
+  const Value& imu = result.At("imus").elements()[0];
+  for (size_t k = 0; k < 6; ++k) {
+    const std::string sensor = k < 3 ? "gyro_bias" : "accel_bias";
+    EXPECT_EQ(names[first + k].AsString(), "imu0." + sensor + "_" + "xyz"[k % 3]);
+    EXPECT_DOUBLE_EQ(imu.At(sensor + "_sigma").AsDoubles(3)[k % 3],
+                     std::sqrt(matrix[first + k].AsDoubles()[first + k]));
+  }
+}
+
+// Of that camera, by that covariance, times the scale of all sigmas; that it is the error to be
+// expected is shown beside the function.
+TEST(CameraImuResult, StatesThePredictionErrorThatTheScaledCovarianceSays) {
+  CameraImuReport report = ReportOn(SyntheticCameraImu());
+  report.resolutions[0] = {400, 300};
+  ASSERT_TRUE(report.diagnosis.scatter.has_value());
+  report.diagnosis.scatter->ratio = 2.25;
+  report.diagnosis.scatter->probability = 0.0;
+  const CameraImuState& state = *report.calibration.state;
+  const CameraImuLayout layout(report.problem, state.T_g_i.order());
+  const double expected =
+      ExpectedPredictionErrorPx(state.cameras[0], report.resolutions[0], layout.cameras[0],
+                                report.calibration.information.covariance);
+  EXPECT_GT(expected, 0.0);
+  EXPECT_DOUBLE_EQ(
+      CameraImuResult(report).At("cameras").elements()[0].At("prediction_error_px").AsDouble(),
+      1.5 * expected);
+}
+
+// What to do depends on why it stopped.
+TEST(DiagnoseCameraImu, AsksForMoreIterationsOnlyWhereTheyWereUsedUp) {
+  CameraImuReport report = ReportOn(SyntheticCameraImu());
+  for (const Termination termination : {Termination::kIterationLimit, Termination::kNoStepHelps}) {
+    report.calibration.termination = termination;
+    report.diagnosis = DiagnoseCameraImu(report.problem, report.calibration);
+    EXPECT_TRUE(Says(report, Severity::kFail,
+                     "did not converge: " + std::string(TerminationName(termination))));
+    EXPECT_EQ(Says(report, Severity::kFail, "--max-iterations"),
+              termination == Termination::kIterationLimit);
+  }
+}
+
+// One richer IMU makes the result that of the richer model, whichever IMU it is.
+TEST(CompareImuModels, NameTheModelInUse) {
+  const auto used = [](const CameraImuReport& report) {
+    return CameraImuResult(report).At("imu_models").At("used").AsString();
+  };
+  EXPECT_EQ(used(ReportOn(SyntheticCameraImu())), "calibrated");
+  Rng rng(1);
+  CameraImuProblem problem = SyntheticCameraImu().Problem(rng);
+  problem.imus[0].model = ImuModelKind::kScaleMisalignmentSizeEffect;
+  EXPECT_EQ(used(ReportOn(problem)), "scale-misalignment");
+  problem.imus.push_back(problem.imus[0]);
+  problem.imus[0].model = ImuModelKind::kCalibrated;
+  EXPECT_EQ(used(ReportOn(problem)), "scale-misalignment");
 }
 
 TEST(CameraImuResult, WithoutAnEstimateSaysWhy) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "calibrato/calibration/camera_imu_layout.h"
+#include "calibrato/calibration/prediction_error.h"
 #include "calibrato/geometry/so3.h"
 #include "calibrato/sensors/camera_chain.h"
 #include "calibrato/sensors/imu_file.h"
@@ -39,6 +40,27 @@ Value Verdicts(const ParameterVerdict* three) {
   Value value = Value::Array();
   for (int k = 0; k < 3; ++k) value.Append(VerdictName(three[k].verdict));
   return value;
+}
+
+// Stamps as in the recording, to find them there; times as on the page.
+void SetLeftOut(const std::string& what, const std::vector<LeftOut>& left_out, Value* value) {
+  Value stamps = Value::Array();
+  Value times = Value::Array();
+  for (const LeftOut& one : left_out) {
+    stamps.Append(one.stamp.nanoseconds());
+    times.Append(std::round(1e6 * one.time_s) / 1e6);
+  }
+  value->Set(what + "_stamps_ns", std::move(stamps)).Set(what + "_times_s", std::move(times));
+}
+
+// Null without a covariance.
+Value ExpectedPredictionError(const CameraImuReport& report, size_t n) {
+  const CameraImuCalibration& calibration = report.calibration;
+  if (calibration.information.covariance.size() == 0 || n >= report.resolutions.size()) return {};
+  const CameraImuLayout layout(report.problem, calibration.state->T_g_i.order());
+  return report.diagnosis.sigma_scale() *
+         ExpectedPredictionErrorPx(calibration.state->cameras[n], report.resolutions[n],
+                                   layout.cameras[n], calibration.information.covariance);
 }
 
 Value CameraValue(const CameraImuReport& report, size_t n) {
@@ -80,6 +102,8 @@ Value CameraValue(const CameraImuReport& report, size_t n) {
       .Set("num_corners", residuals.num_corners)
       .Set("num_outliers", residuals.num_outliers)
       .Set("rejected_views", std::move(rejected));
+  SetLeftOut("rejected_view", residuals.rejected, &value);
+  value.Set("prediction_error_px", ExpectedPredictionError(report, n));
   return value;
 }
 
@@ -88,18 +112,9 @@ Value SensorValue(const SensorResiduals& residuals) {
   value.Set("rms", residuals.rms)
       .Set("normalised", residuals.normalised)
       .Set("num_samples", residuals.num_samples)
-      .Set("num_outliers", residuals.num_outliers);
+      .Set("num_outliers", static_cast<int64_t>(residuals.outliers.size()));
+  SetLeftOut("outlier", residuals.outliers, &value);
   return value;
-}
-
-// Of an IMU, over the trajectory's knots.
-ImuBias MeanBias(const ImuCalibrationState& imu) {
-  ImuBias mean;
-  for (const ImuBias& bias : imu.biases) {
-    mean.gyro += bias.gyro / static_cast<double>(imu.biases.size());
-    mean.accel += bias.accel / static_cast<double>(imu.biases.size());
-  }
-  return mean;
 }
 
 Value NoiseValue(const ImuNoise& noise) {
@@ -107,6 +122,16 @@ Value NoiseValue(const ImuNoise& noise) {
   value.Set("gyro_noise_density", noise.gyro_noise_density)
       .Set("accel_noise_density", noise.accel_noise_density);
   return value;
+}
+
+// The biases' covariances are the last, six an IMU.
+void SetBiasSigmas(const CameraImuDiagnosis& diagnosis, size_t imu, size_t num_imus, Value* value) {
+  const Eigen::MatrixXd& covariance = diagnosis.covariance.matrix;
+  if (covariance.size() == 0) return;
+  const Eigen::VectorXd sigmas = diagnosis.sigma_scale() * covariance.diagonal().cwiseSqrt();
+  const auto first = sigmas.size() - static_cast<Eigen::Index>(6 * (num_imus - imu));
+  value->Set("gyro_bias_sigma", Value::Numbers(Eigen::Vector3d(sigmas.segment<3>(first))))
+      .Set("accel_bias_sigma", Value::Numbers(Eigen::Vector3d(sigmas.segment<3>(first + 3))));
 }
 
 Value ImuValue(const CameraImuReport& report, size_t n) {
@@ -117,8 +142,9 @@ Value ImuValue(const CameraImuReport& report, size_t n) {
   Value value = Value::Object();
   value.Set("model", ImuModelName(report.problem.imus[n].model))
       .Set("gyro_bias", Value::Numbers(bias.gyro))
-      .Set("accel_bias", Value::Numbers(bias.accel))
-      .Set("gyro", SensorValue(report.diagnosis.residuals->gyros[n]))
+      .Set("accel_bias", Value::Numbers(bias.accel));
+  SetBiasSigmas(report.diagnosis, n, report.problem.imus.size(), &value);
+  value.Set("gyro", SensorValue(report.diagnosis.residuals->gyros[n]))
       .Set("accel", SensorValue(report.diagnosis.residuals->accels[n]))
       .Set("noise", NoiseValue(found))
       .Set("stated_noise", NoiseValue(report.problem.imus[n].noise))
@@ -142,24 +168,28 @@ Value ImuModelsValue(const std::optional<ImuModelComparison>& models) {
   if (!models) return {};
   Value change = Value::Array();
   for (const auto& of_camera : models->change) change.Append(Value::Numbers(of_camera));
+  const std::string simple(ImuModelName(ImuModelKind::kCalibrated));
+  const std::string richer(ImuModelName(ImuModelKind::kScaleMisalignment));
   Value value = Value::Object();
-  value.Set("simple", ImuModelName(ImuModelKind::kCalibrated))
-      .Set("richer", ImuModelName(ImuModelKind::kScaleMisalignment))
+  value.Set("simple", simple)
+      .Set("richer", richer)
+      .Set("used", models->is_simple_used ? simple : richer)
       .Set("squared_residuals_fall", models->significance.statistic)
       .Set("degrees", models->significance.degrees)
       .Set("probability", models->significance.probability)
+      .Set("qaic_change", models->qaic_change())
       .Set("change_rad_m", std::move(change));
   return value;
 }
 
-Value CovarianceValue(const CameraImuInformation& information, double sigma_scale) {
-  if (information.covariance.size() == 0) return {};
+Value CovarianceValue(const NamedCovariance& covariance, double sigma_scale) {
+  if (covariance.matrix.size() == 0) return {};
   Value names = Value::Array();
-  for (const std::string& name : information.names) names.Append(name);
+  for (const std::string& name : covariance.names) names.Append(name);
   Value matrix = Value::Array();
-  for (Eigen::Index row = 0; row < information.covariance.rows(); ++row) {
-    matrix.Append(Value::Numbers(
-        Eigen::VectorXd(sigma_scale * sigma_scale * information.covariance.row(row))));
+  for (Eigen::Index row = 0; row < covariance.matrix.rows(); ++row) {
+    matrix.Append(
+        Value::Numbers(Eigen::VectorXd(sigma_scale * sigma_scale * covariance.matrix.row(row))));
   }
   Value value = Value::Object();
   value.Set("names", std::move(names)).Set("matrix", std::move(matrix));
@@ -277,7 +307,8 @@ Value CameraImuResult(const CameraImuReport& report) {
       .Set("num_iterations", calibration.num_iterations)
       .Set("scatter", ScatterValue(report.diagnosis.scatter))
       .Set("imu_models", ImuModelsValue(report.diagnosis.imu_models))
-      .Set("covariance", CovarianceValue(calibration.information, report.diagnosis.sigma_scale()))
+      .Set("covariance",
+           CovarianceValue(report.diagnosis.covariance, report.diagnosis.sigma_scale()))
       .Set("information", InformationValue(calibration.information))
       .Set("residuals", ResidualsValue(report));
   return result;

@@ -15,6 +15,8 @@ struct CameraImuReport {
   CameraImuCalibration calibration;
   CameraImuDiagnosis diagnosis;
   std::vector<Finding> findings;  ///< On the recording (stream_check.h).
+  /// Of the cameras' images, for the prediction error; may be empty, which leaves it out.
+  std::vector<Resolution> resolutions = {};
 };
 
 /// All findings, the worst first.
@@ -30,9 +32,14 @@ struct CameraImuReport {
 ///                   "line_delay_s", "line_delay_sigma_s", with --line-delay,
 ///                   "split": {"difference_rad_m_s": [7], "sigma_rad_m_s": [7], "probability"},
 ///                   "reprojection_rms_px", "num_views", "num_corners", "num_outliers",
-///                   "rejected_views": [names]}],
+///                   "rejected_views": [names], "rejected_view_stamps_ns", "rejected_view_times_s",
+///                   "prediction_error_px": expected by the covariance, null without one}],
 ///      "imus": [{"model", "gyro_bias": [3], "accel_bias": [3], means over time,
-///                "gyro": {"rms", "normalised", "num_samples", "num_outliers"}, "accel": likewise,
+///                "gyro_bias_sigma": [3], "accel_bias_sigma": [3], with a covariance,
+///                "gyro": {"rms", "normalised", "num_samples", "num_outliers",
+///                         "outlier_stamps_ns": [as in the recording],
+///                         "outlier_times_s": [from the trajectory's beginning]}, "accel":
+///                         likewise,
 ///                "noise": {"gyro_noise_density", "accel_noise_density"}, "stated_noise": likewise,
 ///                "T_i_imu": 4x4, "time_offset_s"}],
 ///      "gravity_g": [3], "knot_spacing_s", "num_iterations",
@@ -40,9 +47,10 @@ struct CameraImuReport {
 ///      "scatter": {"num_parts", "ratio", "probability", "sigma_scale"}, null if a part does not
 ///                 determine the result; all sigmas and the covariance are scaled by sigma_scale,
 ///                 the information is not,
-///      "imu_models": {"simple", "richer", "squared_residuals_fall", "degrees", "probability",
-///                     "change_rad_m": [[6] of each camera]}, null if the motion can't tell,
-///      "covariance": {"names", "matrix"},
+///      "imu_models": {"simple", "richer", "used", "squared_residuals_fall", "degrees",
+///                     "probability", "qaic_change", "change_rad_m": [[6] of each camera]}, null if
+///                     the motion can't tell,
+///      "covariance": {"names", "matrix"}, of the calibration, then of the mean biases,
 ///      "information": {"a_optimality", "d_optimality", "e_optimality", "eigenvalues",
 ///                      "a_optimality_conditional"},
 ///      "residuals": {"reprojection_rms_px", "reprojection_rms_all_px", "corner_noise_px",

@@ -14,7 +14,6 @@ SensorResiduals SummariseSamples(const std::vector<VectorSample>& samples,
                                  const std::vector<bool>& inliers, double stddev,
                                  const CameraImuState& state, size_t imu) {
   SensorResiduals summary;
-  summary.first_outlier_s = kNan;
   double squared = 0.0;
   for (size_t k = 0; k < residuals.size(); ++k) {
     if (!residuals[k].allFinite()) continue;
@@ -23,11 +22,9 @@ SensorResiduals SummariseSamples(const std::vector<VectorSample>& samples,
       squared += residuals[k].squaredNorm();
       continue;
     }
-    if (summary.num_outliers++ == 0) {
-      summary.first_outlier_s = TimeOfSample(state, imu, samples[k].stamp);
-    }
+    summary.outliers.push_back({samples[k].stamp, TimeOfSample(state, imu, samples[k].stamp)});
   }
-  const int num_inliers = summary.num_samples - summary.num_outliers;
+  const int num_inliers = summary.num_samples - static_cast<int>(summary.outliers.size());
   summary.rms = num_inliers > 0 ? std::sqrt(squared / (3.0 * num_inliers)) : kNan;
   summary.normalised = summary.rms / stddev;
   return summary;
@@ -35,7 +32,8 @@ SensorResiduals SummariseSamples(const std::vector<VectorSample>& samples,
 
 CornerResiduals SummariseCorners(const std::vector<BoardView>& views,
                                  const std::vector<Eigen::Matrix2Xd>& residuals,
-                                 const std::vector<std::vector<bool>>& inliers, double noise_px) {
+                                 const std::vector<std::vector<bool>>& inliers, double noise_px,
+                                 const CameraImuState& state, size_t camera) {
   CornerResiduals summary;
   double squared = 0.0;
   for (size_t v = 0; v < views.size(); ++v) {
@@ -53,6 +51,7 @@ CornerResiduals SummariseCorners(const std::vector<BoardView>& views,
     summary.num_corners += fitting;
     if (fitting == 0) {
       summary.rejected_views.push_back(views[v].name);
+      summary.rejected.push_back({views[v].stamp, TimeOfView(state, camera, views[v].stamp)});
     } else {
       summary.num_outliers += seen - fitting;
     }
@@ -71,9 +70,9 @@ CameraImuResidualSummary SummariseResiduals(const CameraImuProblem& problem,
   const CameraImuSelection& inliers = calibration.inliers;
   CameraImuResidualSummary summary;
   for (size_t n = 0; n < problem.cameras.size(); ++n) {
-    summary.cameras.push_back(SummariseCorners(problem.cameras[n].views, residuals.corners_px[n],
-                                               inliers.corners[n],
-                                               calibration.weights.corner_noise_px));
+    summary.cameras.push_back(
+        SummariseCorners(problem.cameras[n].views, residuals.corners_px[n], inliers.corners[n],
+                         calibration.weights.corner_noise_px, *calibration.state, n));
   }
   for (size_t n = 0; n < problem.imus.size(); ++n) {
     const ImuStream& stream = problem.imus[n].stream;

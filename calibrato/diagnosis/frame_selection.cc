@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "calibrato/base/input_error.h"
-#include "calibrato/base/parallel.h"
-#include "calibrato/calibration/bundle_adjustment.h"
 #include "calibrato/calibration/view_selection.h"
 
 namespace calibrato {
@@ -23,16 +21,10 @@ std::vector<size_t> InformativeViews(const CameraProblem& camera, const std::str
                                      std::vector<Finding>* findings) {
   const CameraCalibration calibration = CalibrateCamera(camera);
   if (calibration.covariance.size() == 0) return AllOf(camera);
-  const double variance = calibration.noise_stddev_px * calibration.noise_stddev_px;
   const std::vector<BoardView>& used = calibration.used_views;
-  const auto information = ParallelMap<Eigen::MatrixXd>(used.size(), [&](size_t v) {
-    return Eigen::MatrixXd(
-        CameraInformation(*calibration.model, {calibration.T_c_g[v]}, {used[v]}, camera.fixed) /
-        variance);
-  });
   const int focal = CameraModel::FocalIndex(camera.model);
-  const InformationSelection selection =
-      SelectByInformation(information, {focal, focal + 1, focal + 2, focal + 3});
+  const InformationSelection selection = SelectByInformation(
+      InformationOfViews(calibration, camera.fixed), {focal, focal + 1, focal + 2, focal + 3});
   std::vector<size_t> kept;
   for (const size_t v : selection.kept) kept.push_back(calibration.used_view_indices[v]);
   if (kept.size() < static_cast<size_t>(kMinViews)) return AllOf(camera);

@@ -54,7 +54,7 @@ std::optional<ImuModelComparison> ByScore(CameraImuProblem problem,
   if (!(fall >= 0.0)) return std::nullopt;
   const auto degrees = static_cast<double>(kFurther * problem.imus.size());
   return ImuModelComparison{SignificanceOfFall(fall, degrees, sigma_scale),
-                            PosesIn(step.tail(layout.border_size), layout)};
+                            PosesIn(step.tail(layout.border_size), layout), true};
 }
 
 // What the estimates of the further parameters say, and how the rest moves when they are held at
@@ -77,7 +77,7 @@ std::optional<ImuModelComparison> ByEstimates(const CameraImuProblem& problem,
   const VectorXd change = covariance(Eigen::all, further) * weighted;
   return ImuModelComparison{SignificanceOfFall(difference.dot(weighted),
                                                static_cast<double>(further.size()), sigma_scale),
-                            PosesIn(change, layout)};
+                            PosesIn(change, layout), false};
 }
 
 }  // namespace

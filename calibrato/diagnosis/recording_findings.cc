@@ -45,14 +45,12 @@ void AddRange(double progress, const std::string& what, const std::string& remed
 
 void AddSkew(const CameraCalibration& calibration, std::vector<Finding>* findings) {
   std::string what = "the board was hardly tilted";
-  if (!calibration.used_views.empty()) {
-    const double tilt = LargestTilt(calibration);
-    if (tilt < kLeastTilt) {
-      what = Format(
-          "all views are fronto-parallel: the board was never tilted by more than %.0f "
-          "degrees",
-          tilt / std::numbers::pi * 180.0);
-    }
+  const double tilt = LargestTilt(calibration);
+  if (tilt < kLeastTilt) {
+    what = Format(
+        "all views are fronto-parallel: the board was never tilted by more than %.0f "
+        "degrees",
+        tilt / std::numbers::pi * 180.0);
   }
   AddRange(calibration.coverage.skew, what, "tilt the board by 20 to 45 degrees, to all four sides",
            findings);
@@ -181,7 +179,7 @@ void AddBlur(const CameraCalibration& calibration, std::vector<Finding>* finding
 std::vector<Finding> FindingsOnBoardPoses(const CameraProblem& problem,
                                           const CameraCalibration& calibration) {
   std::vector<Finding> findings;
-  if (problem.views.empty()) return findings;
+  if (calibration.used_views.empty()) return findings;
   const Coverage& coverage = calibration.coverage;
   AddRange(coverage.x, "the board did not cross the image from left to right",
            "move it to the left and right edges", &findings);
@@ -189,7 +187,7 @@ std::vector<Finding> FindingsOnBoardPoses(const CameraProblem& problem,
            "move it to the upper and lower edges", &findings);
   AddRange(coverage.size, "the board was always small in the image", "bring it nearer", &findings);
   AddSkew(calibration, &findings);
-  const std::vector<std::string> parts = UncoveredParts(problem.views, problem.resolution);
+  const std::vector<std::string> parts = UncoveredParts(calibration.used_views, problem.resolution);
   if (!parts.empty()) {
     findings.push_back({Severity::kInfo,
                         Enumerated(parts) + " of the image " +

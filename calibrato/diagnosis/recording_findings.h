@@ -7,8 +7,9 @@
 
 namespace calibrato {
 
-/// How the board was held before the camera: coverage ranges not reached (warn), parts of the image
-/// that were never covered, the board never tilted, always at one distance, always near.
+/// How the board was held before the camera in the views that are used: coverage ranges not reached
+/// (warn), parts of the image that were never covered, the board never tilted, always at one
+/// distance, always near.
 [[nodiscard]] std::vector<Finding> FindingsOnBoardPoses(const CameraProblem& problem,
                                                         const CameraCalibration& calibration);
 

@@ -17,6 +17,9 @@ constexpr double kOffsetStep = 0.01;  // [s]
 constexpr size_t kMinIntervals = 20;
 constexpr size_t kMaxIntervals = 1000;  // Spread over the recording; more would tell no more.
 constexpr double kMinStddev = 0.05;     // [rad/s]
+// A peak is higher than all within so many steps: its flanks have ripples of their own.
+constexpr int kPeakSteps = 10;
+constexpr double kClearSigmas = 3.0;
 
 // The angle that a gyroscope has turned by since its first sample, if it turned about one axis:
 // differences over intervals are their mean speeds.
@@ -50,9 +53,15 @@ class TurnedAngle {
   std::vector<double> angles_;
 };
 
-// Correlation and scale at one offset; nothing with too little overlap or motion.
-std::optional<SpeedComparison> CompareAt(const std::vector<RotationSpeed>& camera,
-                                         const TurnedAngle& angle, double time_offset_s) {
+// At one offset, from so many intervals.
+struct ComparisonAt {
+  SpeedComparison comparison;
+  double num_intervals = 0.0;
+};
+
+// Nothing with too little overlap or motion.
+std::optional<ComparisonAt> CompareAt(const std::vector<RotationSpeed>& camera,
+                                      const TurnedAngle& angle, double time_offset_s) {
   double n = 0.0;
   double sum_c = 0.0;
   double sum_g = 0.0;
@@ -79,8 +88,29 @@ std::optional<SpeedComparison> CompareAt(const std::vector<RotationSpeed>& camer
     return std::nullopt;
   }
   const double covariance = (sum_cg - sum_c * sum_g / n) / n;
-  return SpeedComparison{time_offset_s, covariance / std::sqrt(variance_c * variance_g),
-                         sum_cg / sum_cc};
+  return ComparisonAt{
+      {time_offset_s, covariance / std::sqrt(variance_c * variance_g), sum_cg / sum_cc}, n};
+}
+
+// Fisher's z is normal with a variance of 1 / (n - 3), whatever the correlation.
+bool IsClearlyLower(const ComparisonAt& a, const ComparisonAt& b) {
+  const auto z = [](const ComparisonAt& at) {
+    return std::atanh(std::clamp(at.comparison.correlation, -1.0 + 1e-9, 1.0 - 1e-9));
+  };
+  const double variance = 1.0 / (a.num_intervals - 3.0) + 1.0 / (b.num_intervals - 3.0);
+  return z(b) - z(a) > kClearSigmas * std::sqrt(variance);
+}
+
+bool IsPeak(const std::vector<std::optional<ComparisonAt>>& comparisons, size_t k) {
+  const size_t begin = k - std::min<size_t>(k, kPeakSteps);
+  const size_t end = std::min(comparisons.size(), k + kPeakSteps + 1);
+  for (size_t other = begin; other < end; ++other) {
+    if (comparisons[other] &&
+        comparisons[other]->comparison.correlation > comparisons[k]->comparison.correlation) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace
@@ -112,13 +142,26 @@ std::optional<SpeedComparison> CompareSpeeds(const std::vector<RotationSpeed>& c
   std::vector<RotationSpeed> some;
   const size_t stride = camera.size() / kMaxIntervals + 1;
   for (size_t i = 0; i < camera.size(); i += stride) some.push_back(camera[i]);
-  std::optional<SpeedComparison> best;
+  std::vector<std::optional<ComparisonAt>> comparisons;
+  std::optional<ComparisonAt> best;
   const auto num_steps = static_cast<int>(std::lround(kMaxOffset / kOffsetStep));
   for (int step = -num_steps; step <= num_steps; ++step) {
-    const auto comparison = CompareAt(some, angle, centre_s + step * kOffsetStep);
-    if (comparison && (!best || comparison->correlation > best->correlation)) best = comparison;
+    comparisons.push_back(CompareAt(some, angle, centre_s + step * kOffsetStep));
+    const auto& here = comparisons.back();
+    if (here && (!best || here->comparison.correlation > best->comparison.correlation)) best = here;
   }
-  return best;
+  if (!best) return std::nullopt;
+  SpeedComparison nearest = best->comparison;
+  for (size_t k = 0; k < comparisons.size(); ++k) {
+    if (!comparisons[k] || IsClearlyLower(*comparisons[k], *best) || !IsPeak(comparisons, k)) {
+      continue;
+    }
+    const SpeedComparison& peak = comparisons[k]->comparison;
+    if (std::abs(peak.time_offset_s - centre_s) < std::abs(nearest.time_offset_s - centre_s)) {
+      nearest = peak;
+    }
+  }
+  return nearest;
 }
 
 }  // namespace calibrato

@@ -24,13 +24,17 @@ struct RotationSpeed {
 /// How a gyroscope's speeds fit those of a camera on the same body, whatever the rotation between
 /// them.
 struct SpeedComparison {
-  double time_offset_s = 0.0;  ///< t_i = t_c + this, at the highest correlation.
+  double time_offset_s = 0.0;  ///< t_i = t_c + this, at a peak of the correlation.
   double correlation = 0.0;    ///< -1 .. 1
   /// Gyroscope over camera, by least squares through zero: 1 if both are in rad/s, 57.3 if the
   /// gyroscope is in deg/s.
   double scale = 0.0;
 };
 
+/// At the highest peak of the correlation over the time offset; but speeds that repeat themselves
+/// correlate alike at several offsets, and then chance says which of those peaks is highest: of
+/// those that are not clearly lower it is the one nearest to `centre_s`. Clearly lower is one by
+/// more than three standard deviations of the difference of two correlations, in Fisher's z.
 /// @param gyro  Finite and ascending.
 /// @param centre_s  Offsets are looked for within centre_s +- 3 s, in steps of 10 ms.
 /// @return nothing unless twenty intervals at least overlap and the camera's speed changes by more

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "calibrato/calibration/camera_imu_start.h"
+#include "calibrato/calibration/rate_alignment.h"
 #include "calibrato/diagnosis/rotation_speed.h"
 #include "calibrato/diagnosis/stream_defects.h"
 #include "calibrato/diagnosis/upper_median.h"
@@ -15,7 +17,9 @@ namespace {
 constexpr size_t kMinViews = 10;
 constexpr double kMaxRateError = 0.1;
 constexpr double kMinOverlap = 0.9;
-constexpr double kMaxOffset = 0.1;      // [s]
+constexpr double kMaxOffset = 0.1;  // [s]
+// What the solve looks for, and half a step of the comparison [s].
+constexpr double kLargestOffset = CameraImuOptions{}.max_time_offset_s + 0.005;
 constexpr double kLongestPause = 10.0;  // [s]
 constexpr double kSureCorrelation = 0.8;
 constexpr double kNoCorrelation = 0.4;
@@ -49,6 +53,11 @@ Span SpanOf(const std::vector<VectorSample>& samples) {
 // Negative if they have no part in common.
 double OverlapSeconds(const Span& a, const Span& b) {
   return (std::min(a.end, b.end) - std::max(a.begin, b.begin)).seconds();
+}
+
+// Whether the camera's views lie in time at all.
+bool HasStamps(const CheckedCamera& camera) {
+  return camera.views.size() >= 2 && camera.views.front().stamp < camera.views.back().stamp;
 }
 
 class Findings {
@@ -133,7 +142,7 @@ void CheckOverlap(const std::string& camera_name, const Span& camera, const std:
                       imu.length_s(), camera.length_s()),
         Format("give both stamps of one clock; if they began together, add %.3f s to the "
                "stamps of %s",
-               (camera.begin - imu.begin).seconds(), imu_name.c_str()));
+               (imu.begin - camera.begin).seconds(), camera_name.c_str()));
   } else if (overlap_s < kMinOverlap * camera.length_s()) {
     findings->Warn(both + Format(" share %.1f s, of the %.1f s of %s", overlap_s, camera.length_s(),
                                  camera_name.c_str()),
@@ -156,7 +165,8 @@ bool CheckSizes(const std::string& name, const ImuStream& stream, double gravity
     return false;
   }
   const std::string what =
-      name + Format(": the specific force is %.4g m/s^2 (median), gravity is %.4g", force, gravity);
+      name + Format(" accelerometer: the specific force is %.4g m/s^2 (median), gravity is %.4g",
+                    force, gravity);
   if (IsNear(force, gravity)) return true;
   if (IsNear(force, 1.0)) {
     findings->Fail(what + ": it is in g", "multiply the accelerometer's columns by 9.80665");
@@ -225,61 +235,105 @@ void CheckMotion(const std::string& name, const ImuStream& stream, Findings* fin
   }
 }
 
+constexpr const char* kDegreesRemedy = "multiply the gyroscope's columns by 0.0174532925";
+
 // Against the board's motion, where it can be had.
-void CheckSpeeds(const CheckedCamera& camera, const std::string& imu_name,
-                 const std::vector<VectorSample>& gyro, bool is_saturated, Findings* findings) {
-  const double degrees = 180.0 / std::numbers::pi;
-  const std::string in_degrees = "multiply the gyroscope's columns by 0.0174532925";
-  std::optional<SpeedComparison> speeds;
-  if (camera.model) {
-    const std::vector<RotationSpeed> board = RotationSpeeds(*camera.model, camera.views);
-    const Span views{camera.views.front().stamp, camera.views.back().stamp};
-    const bool is_apart = !(OverlapSeconds(views, SpanOf(gyro)) > 0.0);
-    const double centre_s = is_apart ? (gyro.front().stamp - views.begin).seconds() : 0.0;
-    speeds = CompareSpeeds(board, gyro, centre_s);
-  }
-  if (!speeds) {
-    const double rate = MedianNorm(gyro);
-    if (rate > kFastestHand) {
-      findings->Fail(imu_name + Format(": the gyroscope reads %.3g rad/s (median), faster than a "
-                                       "hand turns: it may be in deg/s",
-                                       rate),
-                     in_degrees);
-    }
-    return;
-  }
-  if (speeds->correlation >= kSureCorrelation) {
-    if (IsNear(speeds->scale, degrees)) {
-      findings->Fail(
-          imu_name + Format(": the gyroscope turns %.3g times as fast as the board in %s: "
-                            "it is in deg/s",
-                            speeds->scale, camera.name.c_str()),
-          in_degrees);
-    } else if (!IsNear(speeds->scale, 1.0) && !is_saturated) {
-      // Without its fastest samples a gyroscope seems slower than it is.
-      findings->Warn(
-          imu_name + Format(": the gyroscope turns %.3g times as fast as the board in %s",
-                            speeds->scale, camera.name.c_str()),
-          "check the gyroscope's unit and range, and the camera's intrinsics");
-    }
-    if (std::abs(speeds->time_offset_s) > kMaxOffset) {
-      findings->Warn(
-          Format("the clock of %s is %.2f s %s that of %s", imu_name.c_str(),
-                 std::abs(speeds->time_offset_s),
-                 speeds->time_offset_s > 0.0 ? "ahead of" : "behind", camera.name.c_str()),
-          Format("offsets of up to 1 s are estimated; beyond, add %.2f s to the stamps of "
-                 "%s",
-                 -speeds->time_offset_s, imu_name.c_str()));
-    }
-  } else if (speeds->correlation < kNoCorrelation) {
-    findings->Warn(Format("%s and %s do not turn at the same times (correlation %.2f at best)",
-                          imu_name.c_str(), camera.name.c_str(), speeds->correlation),
-                   "check that both are on one rigid body, that the board stands still, and that "
-                   "their clocks are less than 3 s apart");
+std::optional<SpeedComparison> SpeedsAgainst(const CheckedCamera& camera,
+                                             const std::vector<VectorSample>& gyro) {
+  if (!camera.model) return std::nullopt;
+  const std::vector<RotationSpeed> board = RotationSpeeds(*camera.model, camera.views);
+  const Span views{camera.views.front().stamp, camera.views.back().stamp};
+  const bool is_apart = !(OverlapSeconds(views, SpanOf(gyro)) > 0.0);
+  const double centre_s = is_apart ? (gyro.front().stamp - views.begin).seconds() : 0.0;
+  return CompareSpeeds(board, gyro, centre_s);
+}
+
+// The gyroscope's unit, by a camera that turns with it.
+void CheckScale(const std::string& camera_name, const std::string& imu_name, double scale,
+                bool is_saturated, Findings* findings) {
+  const std::string what = imu_name + Format(
+                                          " gyroscope: it turns %.3g times as fast as the "
+                                          "board in %s",
+                                          scale, camera_name.c_str());
+  if (IsNear(scale, 180.0 / std::numbers::pi)) {
+    findings->Fail(what + ": it is in deg/s", kDegreesRemedy);
+  } else if (!IsNear(scale, 1.0) && !is_saturated) {
+    // Without its fastest samples a gyroscope seems slower than it is.
+    findings->Warn(what, "check the gyroscope's unit and range, and the camera's intrinsics");
   }
 }
 
-void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, double gravity,
+void CheckClocks(const std::string& camera_name, const std::string& imu_name, double offset_s,
+                 Findings* findings) {
+  if (!(std::abs(offset_s) > kMaxOffset)) return;
+  const std::string what =
+      Format("the clock of %s is %.2f s %s that of %s", imu_name.c_str(), std::abs(offset_s),
+             offset_s > 0.0 ? "ahead of" : "behind", camera_name.c_str());
+  if (std::abs(offset_s) > kLargestOffset) {
+    findings->Fail(what, Format("add %.2f s to the stamps of %s; offsets of up to 1 s are "
+                                "estimated, larger ones are not",
+                                offset_s, camera_name.c_str()));
+  } else {
+    findings->Warn(what, Format("offsets of up to 1 s are estimated; to be rid of it, add %.2f s "
+                                "to the stamps of %s",
+                                offset_s, camera_name.c_str()));
+  }
+}
+
+// The IMU against each of the cameras; its unit against the first that can tell.
+void CheckSpeeds(const std::vector<CheckedCamera>& cameras, const std::string& imu_name,
+                 const std::vector<VectorSample>& gyro, bool is_saturated, Findings* findings) {
+  bool is_compared = false;
+  bool has_known_scale = false;
+  for (const CheckedCamera& camera : cameras) {
+    if (!HasStamps(camera)) continue;
+    const auto speeds = SpeedsAgainst(camera, gyro);
+    if (!speeds) continue;
+    is_compared = true;
+    if (speeds->correlation >= kSureCorrelation) {
+      if (!has_known_scale) {
+        CheckScale(camera.name, imu_name, speeds->scale, is_saturated, findings);
+      }
+      has_known_scale = true;
+      CheckClocks(camera.name, imu_name, speeds->time_offset_s, findings);
+    } else if (speeds->correlation < kNoCorrelation) {
+      findings->Warn(Format("%s and %s do not turn at the same times (correlation %.2f at best)",
+                            imu_name.c_str(), camera.name.c_str(), speeds->correlation),
+                     "check that both are on one rigid body, that the board stands still, and that "
+                     "their clocks are less than 3 s apart");
+    }
+  }
+  const double rate = MedianNorm(gyro);
+  if (!is_compared && rate > kFastestHand) {
+    findings->Fail(imu_name + Format(" gyroscope: it reads %.3g rad/s (median), faster than a "
+                                     "hand turns: it may be in deg/s",
+                                     rate),
+                   kDegreesRemedy);
+  }
+}
+
+// How far apart in time its views are.
+void CheckIntervals(const CheckedCamera& camera, Findings* findings) {
+  if (!HasStamps(camera)) {
+    findings->Fail(camera.name + ": its images have no stamps, or all the same",
+                   "name each file by its stamp in nanoseconds (1600000000050000000.png), or list "
+                   "stamps and files in data.csv beside them");
+    return;
+  }
+  std::vector<double> intervals_s;
+  size_t num_short = 0;
+  for (size_t v = 1; v < camera.views.size(); ++v) {
+    intervals_s.push_back((camera.views[v].stamp - camera.views[v - 1].stamp).seconds());
+    if (intervals_s.back() > 0.0 && intervals_s.back() <= kLongestViewInterval) ++num_short;
+  }
+  if (num_short >= kMinRateIntervals) return;
+  findings->Fail(camera.name + Format(": its views are %.2g s apart (median); over more than %.1f "
+                                      "s they do not show how the rig turned",
+                                      UpperMedian(intervals_s), kLongestViewInterval),
+                 "record 10 images a second or more, with the board in view; leave out --every");
+}
+
+void CheckImu(const CheckedImu& imu, const std::vector<CheckedCamera>& cameras, double gravity,
               Findings* findings) {
   const std::string& name = imu.recording.name;
   const StreamDefects gyro = FindDefects(imu.recording.stream.gyro);
@@ -305,15 +359,17 @@ void CheckImu(const CheckedImu& imu, const CheckedCamera* camera, double gravity
   }
   const bool columns_are_right = CheckSizes(name, stream, gravity, findings);
   if (columns_are_right) CheckMotion(name, stream, findings);
-  if (camera == nullptr || camera->views.size() < 2) return;
-  const Span views{camera->views.front().stamp, camera->views.back().stamp};
-  for (const auto& [sensor, samples] :
-       {std::pair(" gyroscope", &stream.gyro), std::pair(" accelerometer", &stream.accel)}) {
-    CheckOverlap(camera->name, views, name + sensor, SpanOf(*samples), findings);
+  for (const CheckedCamera& camera : cameras) {
+    if (!HasStamps(camera)) continue;
+    const Span views{camera.views.front().stamp, camera.views.back().stamp};
+    for (const auto& [sensor, samples] :
+         {std::pair(" gyroscope", &stream.gyro), std::pair(" accelerometer", &stream.accel)}) {
+      CheckOverlap(camera.name, views, name + sensor, SpanOf(*samples), findings);
+    }
   }
   const bool is_saturated =
       gyro.num_saturated[0] + gyro.num_saturated[1] + gyro.num_saturated[2] > 0;
-  if (columns_are_right) CheckSpeeds(*camera, name, stream.gyro, is_saturated, findings);
+  if (columns_are_right) CheckSpeeds(cameras, name, stream.gyro, is_saturated, findings);
 }
 
 }  // namespace
@@ -330,11 +386,11 @@ std::vector<Finding> CheckStreams(const std::vector<CheckedCamera>& cameras,
       findings.Fail(camera.name + Format(" saw the board in %zu images only, %zu are needed",
                                          camera.views.size(), kMinViews),
                     "record 30 s at 10 Hz or more, with the board in the image");
+    } else {
+      CheckIntervals(camera, &findings);
     }
   }
-  for (const CheckedImu& imu : imus) {
-    CheckImu(imu, cameras.empty() ? nullptr : &cameras.front(), gravity, &findings);
-  }
+  for (const CheckedImu& imu : imus) CheckImu(imu, cameras, gravity, &findings);
   return list;
 }
 

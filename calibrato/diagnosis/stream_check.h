@@ -26,12 +26,13 @@ struct CheckedImu {
 };
 
 /// The plain check of cameras and IMUs before they are solved together, of each alone and of each
-/// IMU against camera 0. Findings begin with the name of what they are about.
+/// IMU against each camera. Findings begin with the name of what they are about.
 ///
-/// - fail: the solve can't be right. Fewer than ten views; a sensor without samples; clocks whose
-///   times have no part in common; gyroscope in deg/s; accelerometer in g, without gravity or of
-///   another size; columns of the two swapped; a rig that did not move, or did not turn; a pause of
-///   all of an IMU for more than ten seconds, or a clock that was set.
+/// - fail: the solve can't be right. Fewer than ten views, views without stamps, or hardly any two
+///   within half a second; a sensor without samples; clocks whose times have no part in common, or
+///   that are more than a second apart; gyroscope in deg/s; accelerometer in g, without gravity or
+///   of another size; columns of the two swapped; a rig that did not move, or did not turn; a pause
+///   of all of an IMU for more than ten seconds, or a clock that was set.
 /// - inconclusive: the solve leaves something open. A rig that turned about one axis only.
 /// - warn: the solve runs, on less or on worse. Samples that are not finite, stamps out of order or
 ///   twice, gaps, saturation (`Mended` deals with them); an axis that never changes; a rate more

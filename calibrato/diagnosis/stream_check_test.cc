@@ -224,9 +224,53 @@ TEST_F(CheckStreamsTest, KnowsSwappedColumnsAndMissingGravity) {
 
 TEST_F(CheckStreamsTest, KnowsClocksThatAreASecondApart) {
   ShiftImu(1.0);
-  ExpectOnly(Severity::kWarn, "the clock of imu0 is 1.00 s ahead of that of cam0", "-1.00 s");
+  ExpectOnly(Severity::kWarn, "the clock of imu0 is 1.00 s ahead of that of cam0",
+             "add 1.00 s to the stamps of cam0");
   ShiftImu(-2.0);
-  ExpectOnly(Severity::kWarn, "the clock of imu0 is 1.00 s behind that of cam0", "add 1.00 s");
+  ExpectOnly(Severity::kWarn, "the clock of imu0 is 1.00 s behind that of cam0",
+             "add -1.00 s to the stamps of cam0");
+}
+
+// Beyond what the solve looks for.
+TEST_F(CheckStreamsTest, RefusesClocksThatAreTwoSecondsApart) {
+  ShiftImu(2.0);
+  const std::vector<Finding> findings = Check();
+  ASSERT_EQ(findings.size(), 3U);
+  EXPECT_EQ(findings[2].severity, Severity::kFail);
+  EXPECT_THAT(findings[2].what, HasSubstr("is 2.00 s ahead of that of cam0"));
+}
+
+TEST_F(CheckStreamsTest, LooksAtEveryCamera) {
+  CheckedCamera other = camera_;
+  other.name = "cam1";
+  for (const Finding& finding : CheckStreams({camera_, other}, {imu_})) {
+    ADD_FAILURE() << finding.what;
+  }
+  for (BoardView& view : other.views) view.stamp = view.stamp + Duration::FromSeconds(0.5);
+  std::vector<Finding> findings = CheckStreams({camera_, other}, {imu_});
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_THAT(findings[0].what, HasSubstr("is 0.50 s behind that of cam1"));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("add -0.50 s to the stamps of cam1"));
+  // The unit is the gyroscope's, and said once.
+  for (VectorSample& sample : gyro()) sample.value *= 180.0 / std::numbers::pi;
+  findings = CheckStreams({camera_, other}, {imu_});
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_THAT(findings[0].what, HasSubstr("as fast as the board in cam0: it is in deg/s"));
+  EXPECT_THAT(findings[1].what, HasSubstr("that of cam1"));
+}
+
+TEST_F(CheckStreamsTest, WantsImagesThatFollowEachOther) {
+  std::vector<BoardView> some;
+  for (size_t v = 0; v < camera_.views.size(); v += 14) some.push_back(camera_.views[v]);
+  camera_.views = some;
+  ExpectOnly(Severity::kFail, "cam0: its views are 0.7 s apart (median)",
+             "record 10 images a second or more");
+}
+
+// Photos that are named img00.png, img01.png, ..
+TEST_F(CheckStreamsTest, WantsImagesWithStamps) {
+  for (BoardView& view : camera_.views) view.stamp = Time();
+  ExpectOnly(Severity::kFail, "cam0: its images have no stamps", "data.csv");
 }
 
 TEST_F(CheckStreamsTest, KnowsClocksThatHaveNothingInCommon) {
@@ -236,7 +280,7 @@ TEST_F(CheckStreamsTest, KnowsClocksThatHaveNothingInCommon) {
   EXPECT_EQ(findings[0].severity, Severity::kFail);
   EXPECT_THAT(findings[0].what,
               AllOf(HasSubstr("no time in common"), HasSubstr("begins 1000.000 s after cam0")));
-  EXPECT_THAT(findings[0].remedy, HasSubstr("add -1000.000 s"));
+  EXPECT_THAT(findings[0].remedy, HasSubstr("add 1000.000 s to the stamps of cam0"));
   EXPECT_THAT(findings[2].what, HasSubstr("is 1000.00 s ahead"));
 }
 

@@ -129,7 +129,7 @@ std::optional<MotionInformation> ExpectIntrinsicInformation(
   const int num_parameters = model.num_parameters();
   MatrixXd sum = MatrixXd::Zero(num_parameters, num_parameters);
   for (size_t loop = 0; loop < motion.loops.size(); ++loop) {
-    const double per_second = kCameraRateHz / kFramesPerLoop;
+    const double per_second = rig.camera_rate_hz / kFramesPerLoop;
     for (Instant& instant : InstantsOf(motion, loop, 0.0, kFramesPerLoop)) {
       const Rigid3 T_c_g = T_c_e * PoseOf(instant.kinematics).Inverse() * T_b_g;
       const double visible = visibility.At(T_c_g);
@@ -214,7 +214,7 @@ std::optional<MotionInformation> ExpectExtrinsicInformation(
       const Rigid3 T_c_g = T_c_e * PoseOf(e).Inverse() * T_b_g;
       const double visible = visibility.At(T_c_g);
       const double weight =
-          visible < kLeastWeight ? 0.0 : visible * kCameraRateHz * duration / kFramesPerLoop;
+          visible < kLeastWeight ? 0.0 : visible * rig.camera_rate_hz * duration / kFramesPerLoop;
       result.num_frames += weight;
       planned.frames.push_back({instant.t_s, weight, T_c_g, R_i_e * e.omega_e,
                                 R_g_b * (e.velocity_b + e.R_b_e * e.omega_e.cross(lever))});
@@ -262,7 +262,7 @@ std::optional<MotionInformation> ExpectExtrinsicInformation(
     const FrameKinematics& e = instant.kinematics;
     const PlannedMotionGradient::Frame& by = expected->gradient.frames[k];
     const double duration = motion.loops[instant.loop].duration_s;
-    const double seen = kCameraRateHz * duration / kFramesPerLoop;
+    const double seen = rig.camera_rate_hz * duration / kFramesPerLoop;
     FrameKinematicsGradient gradient;
     AddPoseGradient(by.T_c_g + by.weight * seen * visibility.Gradient(frame.T_c_g), T_c_e, T_b_g, e,
                     &gradient);

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sqlite3.h>
+#include <sys/resource.h>
 
 #include <optional>
 #include <string_view>
@@ -14,6 +15,8 @@
 #include "calibrato/base/input_error_testing.h"
 #include "calibrato/base/rng.h"
 #include "calibrato/recording/bag_for_test.h"
+#include "calibrato/recording/corner_list.h"
+#include "calibrato/recording/imu_list.h"
 #include "calibrato/recording/recording.h"
 #include "calibrato/recording/test_folder.h"
 
@@ -140,8 +143,16 @@ TEST_P(DamagedBags, AreReadWhole) {
   EXPECT_EQ(NumImagesRead(folder_, GetParam().bytes), GetParam().num_images);
 }
 
+// What the process has ever held in memory [bytes].
+double PeakMemory() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024.0 * static_cast<double>(usage.ru_maxrss);
+}
+
 TEST_P(DamagedBags, TruncatedAnywhereAreRefusedOrReadInPart) {
   const std::string& bytes = GetParam().bytes;
+  const double memory_before = PeakMemory();
   size_t num_refused = 0;
   size_t num_cuts = 0;
   const size_t step = Step(bytes);
@@ -155,6 +166,12 @@ TEST_P(DamagedBags, TruncatedAnywhereAreRefusedOrReadInPart) {
     }
   }
   EXPECT_GT(num_refused, num_cuts * 8 / 10);
+#ifdef __SANITIZE_ADDRESS__
+  constexpr double kKept = 512e6;  // It keeps what was freed.
+#else
+  constexpr double kKept = 0.0;
+#endif
+  EXPECT_LT(PeakMemory() - memory_before, 64e6 + 10.0 * static_cast<double>(bytes.size()) + kKept);
 }
 
 TEST_P(DamagedBags, WithHugeNumbersAnywhereAreRefusedOrReadInPart) {
@@ -184,6 +201,43 @@ TEST_P(DamagedBags, WithBytesFlippedAreRefusedOrReadInPart) {
     }
     NumImagesRead(folder_, damaged);
   }
+}
+
+// Lists end where they are cut: after a whole line they are shorter, within one they are refused or
+// end in a number that is shorter.
+TEST(DamagedList, TruncatedAnywhereIsRefusedOrReadInPart) {
+  const TestFolder folder;
+  const std::string corners =
+      "#timestamp [ns],tag_id,tag_corner,u [px],v [px],x [m],y [m],z [m]\n"
+      "1404733405732800000,0,0,175.9867,336.8253,0.0,0.0,0.0\n"
+      "1404733405732800000,1,2,175.5,33e1,0.1,0.0,0.0\n";
+  const std::string imu =
+      "#timestamp [ns],w_x,w_y,w_z,a_x,a_y,a_z\n17,1,2,3,4,5,6\n18,1,2,3,4,5,6\n";
+  const auto read_all = [&](const std::string& content, const auto& read) {
+    size_t num_refused = 0;
+    for (size_t size = 0; size < content.size(); ++size) {
+      const std::string path = folder.Write("damaged", content.substr(0, size));
+      try {
+        EXPECT_LE(read(path), 2U);
+      } catch (const InputError& error) {
+        EXPECT_THAT(error.what(), HasSubstr("damaged"));
+        ++num_refused;
+      }
+    }
+    return num_refused;
+  };
+  const auto num_corners = [](const std::string& path) {
+    size_t count = 0;
+    for (const BoardView& view : ReadCornerList(path, std::nullopt))
+      count += view.corner_ids.size();
+    return count;
+  };
+  const auto num_samples = [](const std::string& path) { return ReadImuList(path).gyro.size(); };
+  EXPECT_GT(read_all(corners, num_corners), 100U);
+  EXPECT_GT(read_all(imu, num_samples), 50U);
+  // Of a gzip file nothing is believed that is not whole.
+  const std::string packed = Gzip(corners);
+  EXPECT_EQ(read_all(packed, num_corners), packed.size());
 }
 
 TEST(DamagedBag, OfMoreMessagesThanBytesIsRefused) {

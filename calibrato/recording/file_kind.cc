@@ -16,9 +16,10 @@ using namespace std::string_view_literals;
 // 13818-1 (pack header; transport packets of 188 bytes that begin with 0x47).
 bool IsVideo(std::string_view bytes) {
   const std::string_view box = bytes.substr(std::min<size_t>(bytes.size(), 4), 4);
+  const std::string_view form = bytes.substr(std::min<size_t>(bytes.size(), 8), 4);
   return box == "ftyp" || box == "moov" || box == "mdat" || box == "wide" ||
          bytes.starts_with("\x1a\x45\xdf\xa3"sv) || bytes.starts_with("\0\0\1\xba"sv) ||
-         (bytes.starts_with("RIFF") && bytes.substr(8).starts_with("AVI ")) ||
+         (bytes.starts_with("RIFF") && form == "AVI ") ||
          (bytes.size() > 188 && bytes[0] == '\x47' && bytes[188] == '\x47');
 }
 

@@ -35,6 +35,9 @@ struct RecordedImage {
 
 struct CameraImages {
   std::vector<RecordedImage> list;  ///< Ascending in time; photos without stamps by name.
+  /// In the order in which they were recorded, where that is another one: a clock was set back, or
+  /// messages overtook each other. Else empty.
+  std::vector<Time> stamps_as_recorded;
   std::shared_ptr<const ImageReader> reader;
 };
 

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -234,6 +235,13 @@ std::vector<VectorSample> ReadOneSensor(const std::string& path, const Quantity&
   return std::move(ReadList(path, layout).front());
 }
 
+// What ReadList takes for it: JSON's "null" is no number.
+std::string FieldText(double x) {
+  if (std::isnan(x)) return "nan";
+  if (std::isinf(x)) return x > 0.0 ? "inf" : "-inf";
+  return FormatNumber(x);
+}
+
 std::string ListText(const Layout& layout,
                      const std::vector<const std::vector<VectorSample>*>& sensors) {
   std::string text = layout.Header() + "\n";
@@ -242,7 +250,7 @@ std::string ListText(const Layout& layout,
     text += std::to_string(first[k].stamp.nanoseconds());
     for (const std::vector<VectorSample>* sensor : sensors) {
       assert((*sensor)[k].stamp == first[k].stamp);
-      for (const double x : (*sensor)[k].value) text += ',' + FormatNumber(x);
+      for (const double x : (*sensor)[k].value) text += ',' + FieldText(x);
     }
     text += '\n';
   }

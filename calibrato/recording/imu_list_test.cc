@@ -83,6 +83,8 @@ TEST_F(ImuListTest, RoundTrip) {
       "#timestamp [ns],w_x [rad/s],w_y [rad/s],w_z [rad/s],a_x [m/s^2],a_y [m/s^2],a_z [m/s^2]\n"
       "1404733405747800064,0.1,0.2,0.30000000000000004,9.80665,1e-20,-3.5\n";
   EXPECT_EQ(ImuListText(Read(text)), text);
+  const std::string broken = text + "1404733405752800064,nan,0.5,inf,-inf,1,2\n";
+  EXPECT_EQ(ImuListText(Read(broken)), broken);
 }
 
 TEST_F(ImuListTest, ErrorsNameFileAndLine) {

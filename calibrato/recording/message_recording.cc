@@ -125,6 +125,10 @@ CameraRecording Camera(const std::string& path, const std::shared_ptr<const Logs
                        const std::string& topic, TopicContent content) {
   std::vector<PlacedImage>& images = content.images;
   const auto before = [](const PlacedImage& a, const PlacedImage& b) { return a.stamp < b.stamp; };
+  std::vector<Time> stamps_as_recorded;
+  if (!std::is_sorted(images.begin(), images.end(), before)) {
+    for (const PlacedImage& image : images) stamps_as_recorded.push_back(image.stamp);
+  }
   std::stable_sort(images.begin(), images.end(), before);
   const auto twin = std::adjacent_find(
       images.begin(), images.end(),
@@ -137,6 +141,7 @@ CameraRecording Camera(const std::string& path, const std::shared_ptr<const Logs
                                : "record the bag again, with one publisher to the topic"});
   }
   CameraImages recorded;
+  recorded.stamps_as_recorded = std::move(stamps_as_recorded);
   for (const PlacedImage& image : images) {
     recorded.list.push_back({std::to_string(image.stamp.nanoseconds()), image.stamp});
   }
@@ -221,7 +226,9 @@ Recording OpenMessageRecording(const std::string& path, Logs given,
     recording.warnings.insert(recording.warnings.end(), log->warnings().begin(),
                               log->warnings().end());
   }
-  if (options.with_cameras) {
+  const bool is_without_cameras = options.cameras_may_be_missing && options.image_globs.empty() &&
+                                  image_topics.empty() && !imu_topics.empty();
+  if (options.with_cameras && !is_without_cameras) {
     for (const std::string& topic : ChooseImageTopics(path, image_topics, options.image_globs)) {
       recording.cameras.push_back(Camera(path, logs, topic, std::move(contents.at(topic))));
     }

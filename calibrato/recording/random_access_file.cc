@@ -15,8 +15,12 @@ namespace calibrato {
 namespace {
 
 [[noreturn]] void Fail(const std::string& path, int error) {
-  throw InputError({"cannot read file", path, std::generic_category().message(error),
-                    error == ENOENT ? "check the spelling of the path" : "copy it again"});
+  if (error == ENOENT) {
+    throw InputError(
+        {"cannot read file", path, "no such file or folder", "check the spelling of the path"});
+  }
+  throw InputError(
+      {"cannot read file", path, std::generic_category().message(error), "copy it again"});
 }
 
 }  // namespace

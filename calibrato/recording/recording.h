@@ -43,6 +43,8 @@ struct RecordingOptions {
   std::optional<Resolution> resolution;  ///< Of corner lists; overrides every file.
   bool with_imus = true;                 ///< False leaves the IMUs unread.
   bool with_cameras = true;              ///< False leaves the cameras unread.
+  /// A recording of IMUs alone is one too; else it is an error to have no camera.
+  bool cameras_may_be_missing = false;
 };
 
 /// Opens a recording. What kind it is, its content tells, not its name:

@@ -348,6 +348,7 @@ Recording OpenRecordingFolder(const std::string& given_path, const RecordingOpti
     }
   }
   if (recording.cameras.empty()) {
+    if (options.cameras_may_be_missing && !recording.imus.empty()) return recording;
     throw InputError({"no recording", path,
                       "found neither cam0_corners.csv[.gz] nor images in cam0/data, cam0 or the "
                       "folder itself (png, jpg, jpeg, bmp, tif, tiff, pgm), nor a bag or a video "

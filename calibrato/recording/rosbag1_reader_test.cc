@@ -49,6 +49,8 @@ class Rosbag1Test : public testing::Test {
     ASSERT_EQ(images.list.size(), 2U);
     EXPECT_EQ(images.list[0].stamp.nanoseconds(), kStart + 3);
     EXPECT_EQ(images.list[1].name, std::to_string(kStart + 7));
+    ASSERT_EQ(images.stamps_as_recorded.size(), 2U);
+    EXPECT_EQ(images.stamps_as_recorded[0].nanoseconds(), kStart + 7);
     EXPECT_THAT(GreyOf(images.reader->Read(0)).pixels, ElementsAre('a', 'b', 'b'));
     EXPECT_THAT(GreyOf(images.reader->Read(1)).pixels, ElementsAre('k', 'l', 'l'));
     ASSERT_EQ(recording.imus.size(), 1U);
@@ -97,6 +99,22 @@ TEST_F(Rosbag1Test, RefusesAClosedBagThatIsCutAnywhere) {
   for (size_t size = 0; size < bag.size() - kImageTopic.size() - kImuTopic.size(); ++size) {
     EXPECT_NE(ErrorOf(bag.substr(0, size)), "") << size;
   }
+}
+
+TEST_F(Rosbag1Test, MayHaveNoCamerasButNoDamagedOnes) {
+  RecordingOptions options;
+  options.cameras_may_be_missing = true;
+  const std::string imus = kImuTopic + Imu(kStart) + Imu(kStart + 5);
+  const Recording recording =
+      OpenRecording(folder_.Write("imus", Bag({PlainChunk(imus)}, 1, kImuTopic)), options);
+  EXPECT_TRUE(recording.cameras.empty());
+  EXPECT_EQ(recording.imus.size(), 1U);
+  EXPECT_THAT(ErrorOf(Bag({PlainChunk(imus)}, 1, kImuTopic)), HasSubstr("no images"));
+  const std::string twins = kImageTopic + imus + Image(kStart, 'a') + Image(kStart, 'b');
+  const std::string damaged =
+      folder_.Write("twins", Bag({PlainChunk(twins)}, 1, kImageTopic + kImuTopic));
+  EXPECT_THAT(InputErrorOf([&] { static_cast<void>(OpenRecording(damaged, options)); }),
+              HasSubstr("two images of one stamp"));
 }
 
 TEST_F(Rosbag1Test, SaysWhatIsWrongAndWhere) {

@@ -65,8 +65,9 @@ testing::AssertionResult Says(const std::string& drawn, const std::string& words
 }
 
 TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
-  const std::string drawn = Draw({CameraDocumentForTest(), CameraImuDocumentForTest(),
-                                  LearnDocumentForTest(), Table1DocumentForTest()});
+  const std::string drawn =
+      Draw({CameraDocumentForTest(), CameraImuDocumentForTest(), CheckDocumentForTest(),
+            NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest()});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "plot-failed"));
   EXPECT_FALSE(Says(drawn, "class=\"empty\""));
@@ -81,6 +82,11 @@ TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
   EXPECT_TRUE(Says(drawn, "The recording does not determine the result."));
   EXPECT_TRUE(Says(drawn, "translation along y is not observable"));
   EXPECT_TRUE(Says(drawn, "gyroscope residuals 1.1 times the stated noise"));
+  EXPECT_TRUE(Says(drawn, "This recording can be calibrated with; it could be better."));
+  EXPECT_TRUE(Says(drawn, "record 15 s more, rotate about x"));
+  EXPECT_TRUE(Says(drawn, "1, longest 0.43 s"));
+  EXPECT_TRUE(Says(drawn, "Where cam0 saw corners"));
+  EXPECT_TRUE(Says(drawn, "below 0.00003 (95 %)"));
   EXPECT_TRUE(Says(drawn, "Best return 2.318 over 300 episodes."));
   EXPECT_TRUE(Says(drawn,
                    "learned has 0.55 times the error of handcrafted (95 % interval 0.495 to "
@@ -106,7 +112,8 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
   const std::string drawn =
       Draw({Value::Object().Set("kind", "horoscope").Set("luck", 7), camera,
             Value::Object().Set("kind", "learn"), broken, Value::Object().Set("kind", "table1"),
-            Value::Object().Set("kind", "camera-imu"), Value::Object().Set("kind", "diff")});
+            Value::Object().Set("kind", "camera-imu"), Value::Object().Set("kind", "diff"),
+            Value::Object().Set("kind", "check"), Value::Object().Set("kind", "noise")});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "undefined"));
   EXPECT_TRUE(Says(drawn, "This page cannot draw results of kind “horoscope”."));

@@ -465,12 +465,20 @@ Value CameraImuDocumentForTest() {
                .Set("sigma_rad_m_s", Numbers({4e-4, 6e-4, 4e-4, 1.6e-3, 0.05, 0.014, 6e-5}))
                .Set("probability", 0.7))
       .Set("rejected_views", Words({"1403709383937837056"}))
+      .Set("rejected_view_times_s", Numbers({7.3}))
+      .Set("prediction_error_px", 0.71)
       .Set("num_outliers", 3);
   Value imu = Value::Object();
   imu.Set("model", "calibrated")
       .Set("gyro_bias", Numbers({0.01, -0.02, 0.005}))
       .Set("accel_bias", Numbers({0.05, 0.1, -0.08}))
-      .Set("gyro", Value::Object().Set("rms", 2e-3).Set("normalised", 1.1).Set("num_outliers", 1))
+      .Set("gyro_bias_sigma", Numbers({1e-5, 2e-5, 1e-5}))
+      .Set("accel_bias_sigma", Numbers({1e-3, 2e-3, 1e-3}))
+      .Set("gyro", Value::Object()
+                       .Set("rms", 2e-3)
+                       .Set("normalised", 1.1)
+                       .Set("num_outliers", 1)
+                       .Set("outlier_times_s", Numbers({12.0})))
       .Set("accel", Value::Object().Set("rms", 0.03).Set("normalised", 0.9));
   Value finding = Value::Object();
   finding.Set("severity", "inconclusive")
@@ -487,6 +495,16 @@ Value CameraImuDocumentForTest() {
           .Set("gravity_g", Numbers({-9.7, 0.9, 1.1}))
           .Set("knot_spacing_s", 0.1)
           .Set("num_iterations", 9)
+          .Set("imu_models", Value::Object()
+                                 .Set("simple", "calibrated")
+                                 .Set("richer", "scale-misalignment")
+                                 .Set("used", "calibrated")
+                                 .Set("squared_residuals_fall", 65.5)
+                                 .Set("degrees", 24)
+                                 .Set("probability", 1e-5)
+                                 .Set("qaic_change", -17.5)
+                                 .Set("change_rad_m", Value::Array().Append(Numbers(
+                                                          {2e-3, 1e-3, 0, 1e-3, 2e-3, -6.3e-3}))))
           .Set("covariance", CameraImuCovariance())
           .Set("information", Value::Object()
                                   .Set("a_optimality", 3.2)

@@ -7,6 +7,8 @@ namespace calibrato {
 /// One document of each kind, with every member that the page draws, of plausible numbers.
 Value CameraDocumentForTest();
 Value CameraImuDocumentForTest();
+Value CheckDocumentForTest();
+Value NoiseDocumentForTest();
 Value LearnDocumentForTest();
 Value Table1DocumentForTest();
 

@@ -33,7 +33,11 @@ namespace calibrato {
 ///
 /// "camera-imu": camera-imu result.json, and "plots" (diagnosis/camera_imu_plots.h).
 ///
+/// "check": check result.json, and "plots" (diagnosis/check_document.h).
+///
 /// "diff": as `calibrato diff` prints it (diagnosis/comparison_document.h).
+///
+/// "noise": as `calibrato noise` prints it (diagnosis/noise_document.h).
 ///
 /// "learn": learn result.json, and "training": the lines of training.jsonl, and "motion": one of
 /// the motions below, or an array of them; it may carry a "board_outline_b" of its own.

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "calibrato/base/nearest_name.h"
+#include "calibrato/base/required_keys.h"
 #include "calibrato/sensors/board.h"
 
 namespace calibrato {
@@ -24,19 +25,32 @@ int Side(const Value& value, const char* key, int smallest) {
   return static_cast<int>(value.At(key).AsInt(smallest, kMaxSide));
 }
 
+// Far beyond every board there is, and far from where a double overflows.
+double InRange(const Value& value, const char* key) {
+  constexpr double kLeast = 1e-6;
+  constexpr double kMost = 1e3;
+  const double number = value.At(key).AsDouble();
+  if (number >= kLeast && number <= kMost) return number;
+  value.At(key).Fail("value out of range",
+                     "expected a number from 1e-6 to 1000, found " + FormatNumber(number),
+                     "lengths are in metres, gaps between tags in sides of a tag");
+}
+
 Board ReadCheckerboard(const Value& value, std::vector<std::string>* warnings) {
   WarnOfUnknownKeys(value, {"targetCols", "targetRows", "rowSpacingMeters", "colSpacingMeters"},
                     warnings);
+  RequireKeys(value, {"targetCols", "targetRows", "rowSpacingMeters", "colSpacingMeters"});
   Checkerboard board;
   board.rows = Side(value, "targetRows", 2);
   board.columns = Side(value, "targetCols", 2);
-  board.row_spacing_m = value.At("rowSpacingMeters").AsPositive();
-  board.column_spacing_m = value.At("colSpacingMeters").AsPositive();
+  board.row_spacing_m = InRange(value, "rowSpacingMeters");
+  board.column_spacing_m = InRange(value, "colSpacingMeters");
   return board;
 }
 
 Board ReadAprilGrid(const Value& value, std::vector<std::string>* warnings) {
   WarnOfUnknownKeys(value, {"tagCols", "tagRows", "tagSize", "tagSpacing"}, warnings);
+  RequireKeys(value, {"tagCols", "tagRows", "tagSize", "tagSpacing"});
   AprilGrid board;
   board.rows = Side(value, "tagRows", 1);
   board.columns = Side(value, "tagCols", 1);
@@ -47,18 +61,19 @@ Board ReadAprilGrid(const Value& value, std::vector<std::string>* warnings) {
                                  " of the family 36h11",
                              "use fewer tagRows or tagCols");
   }
-  board.tag_size_m = value.At("tagSize").AsPositive();
-  board.tag_spacing = value.At("tagSpacing").AsPositive();
+  board.tag_size_m = InRange(value, "tagSize");
+  board.tag_spacing = InRange(value, "tagSpacing");
   return board;
 }
 
 Board ReadCircleGrid(const Value& value, std::vector<std::string>* warnings) {
   WarnOfUnknownKeys(value, {"targetCols", "targetRows", "spacingMeters", "asymmetricGrid"},
                     warnings);
+  RequireKeys(value, {"targetCols", "targetRows", "spacingMeters"});
   CircleGrid board;
   board.rows = Side(value, "targetRows", 2);
   board.columns = Side(value, "targetCols", 2);
-  board.spacing_m = value.At("spacingMeters").AsPositive();
+  board.spacing_m = InRange(value, "spacingMeters");
   if (const Value* asymmetric = value.Find("asymmetricGrid")) {
     board.asymmetric = asymmetric->AsBool();
   }
@@ -85,11 +100,13 @@ Board ReadCharuco(const Value& value, std::vector<std::string>* warnings) {
   WarnOfUnknownKeys(
       value, {"targetCols", "targetRows", "squareSizeMeters", "markerSizeMeters", "dictionary"},
       warnings);
+  RequireKeys(value,
+              {"targetCols", "targetRows", "squareSizeMeters", "markerSizeMeters", "dictionary"});
   Charuco board;
   board.rows = Side(value, "targetRows", 3);
   board.columns = Side(value, "targetCols", 3);
-  board.square_size_m = value.At("squareSizeMeters").AsPositive();
-  board.marker_size_m = value.At("markerSizeMeters").AsPositive();
+  board.square_size_m = InRange(value, "squareSizeMeters");
+  board.marker_size_m = InRange(value, "markerSizeMeters");
   if (!(board.marker_size_m < board.square_size_m)) {
     value.At("markerSizeMeters")
         .Fail("marker too large", "it must fit into a square of squareSizeMeters",

@@ -152,6 +152,23 @@ TEST(Board, ANegativeSizeIsAnErrorWithItsLine) {
   EXPECT_NE(error.find("rowSpacingMeters"), std::string::npos) << error;
 }
 
+TEST(Board, ASizeThatNoBoardHasIsAnErrorWithItsLine) {
+  const auto error_of = [](const std::string& spacing) {
+    return ErrorOf("target_type: 'checkerboard'\ntargetCols: 7\ntargetRows: 6\nrowSpacingMeters: " +
+                   spacing + "\ncolSpacingMeters: 0.06\n");
+  };
+  for (const char* spacing : {"1e-308", "1e-7", "0", "1001", "1e300"}) {
+    const std::string error = error_of(spacing);
+    EXPECT_NE(error.find("line 4"), std::string::npos) << error;
+    EXPECT_NE(error.find("rowSpacingMeters"), std::string::npos) << error;
+  }
+  EXPECT_EQ(error_of("1e-6"), "");
+  EXPECT_EQ(error_of("1000"), "");
+  const std::string gap = ErrorOf(
+      "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 6\ntagSize: 0.088\ntagSpacing: 1e-308\n");
+  EXPECT_NE(gap.find("line 5"), std::string::npos) << gap;
+}
+
 TEST(Board, AnUnknownBoardSaysWhichAreKnown) {
   EXPECT_NE(ErrorOf("target_type: 'dartboard'\n").find("checkerboard"), std::string::npos);
 }

@@ -7,6 +7,10 @@
 namespace calibrato {
 namespace {
 
+// Below it two images are further apart than any motion is long, and in the end than stamps reach.
+constexpr double kMinCameraRateHz = 0.01;
+constexpr double kMaxCameraRateHz = 1000.0;
+
 CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
   const std::vector<std::string> unknown =
       value.UnknownKeys({"stddev_px", "blur_factor", "blur_knee_px", "blur_at_half", "blur_slope"});
@@ -30,7 +34,7 @@ double CornerNoise::Stddev(double blur_px) const {
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
     const std::vector<std::string> unknown = value.UnknownKeys(
-        {"cameras", "imu", "board", "T_e_c0", "exposure_s", "noise", "images", "arm"});
+        {"cameras", "imu", "board", "T_e_c0", "exposure_s", "rate_hz", "noise", "images", "arm"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   Rig rig;
@@ -57,6 +61,15 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   rig.board = BoardFromValue(value.At("board"), warnings);
   rig.T_w_g = Rigid3FromValue(value.At("board").At("T_w_g"));
   if (const Value* exposure = value.Find("exposure_s")) rig.exposure_s = exposure->AsNonNegative();
+  if (const Value* rate = value.Find("rate_hz")) {
+    rig.camera_rate_hz = rate->AsPositive();
+    if (!(rig.camera_rate_hz <= kMaxCameraRateHz)) {
+      rate->Fail("bad rate of the camera", "it is more than 1000 Hz", "write images a second");
+    }
+    if (!(rig.camera_rate_hz >= kMinCameraRateHz)) {
+      rate->Fail("bad rate of the camera", "it is less than 0.01 Hz", "write images a second");
+    }
+  }
   if (const Value* noise = value.Find("noise")) {
     rig.corner_noise = CornerNoiseFromValue(*noise, warnings);
   }
@@ -98,6 +111,7 @@ Value ToValue(const Rig& rig) {
       .Set("board", std::move(board))
       .Set("T_e_c0", ToValue(rig.T_e_c0))
       .Set("exposure_s", rig.exposure_s)
+      .Set("rate_hz", rig.camera_rate_hz)
       .Set("noise", std::move(noise))
       .Set("images", ToValue(rig.image_disturbances))
       .Set("arm", std::move(arm));

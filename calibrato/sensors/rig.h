@@ -37,6 +37,9 @@ struct CornerNoise {
   [[nodiscard]] double Stddev(double blur_px) const;
 };
 
+/// Rate of the camera in the paper's scene [Hz].
+inline constexpr double kPaperCameraRateHz = 10.0;
+
 /// A camera-IMU rig on its carrier, with the board before it: the truth of a simulation.
 struct Rig {
   std::vector<Camera> cameras;
@@ -48,10 +51,11 @@ struct Rig {
   ArmLimits arm_limits;
   ArmDisturbances arm_disturbances;
   Board board;
-  Rigid3 T_w_g;                          ///< Where the board stands.
-  double exposure_s = 0.0;               ///< [s] >= 0; 0 means no motion blur.
-  CornerNoise corner_noise;              ///< Fidelity `fast` and `physical`.
-  ImageDisturbances image_disturbances;  ///< Fidelity `rendered`.
+  Rigid3 T_w_g;                                ///< Where the board stands.
+  double exposure_s = 0.0;                     ///< [s] >= 0; 0 means no motion blur.
+  double camera_rate_hz = kPaperCameraRateHz;  ///< [Hz] > 0, at most 1000.
+  CornerNoise corner_noise;                    ///< Fidelity `fast` and `physical`.
+  ImageDisturbances image_disturbances;        ///< Fidelity `rendered`.
 };
 
 /// RIG.yaml (docs/formats.md section 3). @throws InputError with line and key. Unknown keys are

@@ -22,6 +22,7 @@ Rig MakeRig() {
   rig.board = Checkerboard{6, 7, 0.06, 0.06};
   rig.T_w_g = {ExpSo3({1.0, 2.0, 0.5}), {-2.0, -0.5, 0.7}};
   rig.exposure_s = 0.005;
+  rig.camera_rate_hz = 25.0;
   rig.corner_noise.stddev_px = 0.2;
   rig.corner_noise.blur_knee_px = 4.5;
   rig.arm_limits.joint_upper = Eigen::Matrix<double, 7, 1>::Constant(2.5);
@@ -55,6 +56,7 @@ TEST(Rig, RoundTrip) {
   EXPECT_EQ(rig.arm_disturbances.mode_hz, 17.0);
   EXPECT_EQ(rig.arm_disturbances.mode_damping, 0.1);
   EXPECT_EQ(rig.arm_disturbances.torque_ripple, 0.3);
+  EXPECT_EQ(rig.camera_rate_hz, 25.0);
 }
 
 TEST(Rig, WhatIsOptionalHasDefaults) {
@@ -63,6 +65,7 @@ TEST(Rig, WhatIsOptionalHasDefaults) {
   text.erase(text.find("exposure_s"));
   const Rig rig = RigFromValue(ParseYaml(text, "rig.yaml"), nullptr);
   EXPECT_EQ(rig.exposure_s, 0.0);
+  EXPECT_EQ(rig.camera_rate_hz, 10.0);
   EXPECT_EQ(rig.corner_noise.stddev_px, 0.1);
 }
 
@@ -81,6 +84,23 @@ TEST(Rig, AnArmThatSwingsFasterThanItIsSimulatedIsAnError) {
   const std::string value = "mode_hz: 17";
   text.replace(text.find(value), value.size(), "mode_hz: 170");
   EXPECT_THROW((void)RigFromValue(ParseYaml(text, "rig.yaml"), nullptr), InputError);
+}
+
+TEST(Rig, ARateThatNoCameraHasIsAnErrorWithLineAndKey) {
+  for (const char* rate : {"0", "-10", "1e-12", "0.009", "1001", ".nan"}) {
+    Value value = ToValue(MakeRig());
+    std::string text = ToYaml(value);
+    const std::string key = "\nrate_hz: 25";
+    ASSERT_NE(text.find(key), std::string::npos) << text;
+    text.replace(text.find(key), key.size(), std::string("\nrate_hz: ") + rate);
+    try {
+      (void)RigFromValue(ParseYaml(text, "rig.yaml"), nullptr);
+      FAIL() << rate;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("rate_hz"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("line"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(Rig, ANegativeDensityIsAnErrorWithLineAndKey) {

@@ -64,11 +64,12 @@ SimulatedFrames SimulateFrames(const Rig& rig, const CarrierPath& path, Time sta
   const Eigen::Matrix3Xd points_g = BoardPoints(rig.board);
   const std::vector<std::pair<int, int>> neighbours = NeighbouringPoints(rig.board);
   const CornerNoise& noise = rig.corner_noise;
-  const Duration period = Duration::FromSeconds(1.0 / kCameraRateHz);
   const Duration end = Duration::FromSeconds(path.duration_s);
 
   SimulatedFrames frames;
-  for (Duration elapsed; elapsed < end; elapsed = elapsed + period) {
+  for (int frame = 0;; ++frame) {
+    const Duration elapsed = Duration::FromSeconds(frame / rig.camera_rate_hz);
+    if (!(elapsed < end)) break;
     ++frames.num_frames;
     const Rigid3 T_c0_g = BoardInCamera(rig, path.at(elapsed.seconds()).T_b_e);
     auto pixels = VisibleCorners(camera, T_c0_g, points_g);

@@ -9,9 +9,6 @@
 
 namespace calibrato {
 
-/// Rate of the camera in the paper's scene [Hz].
-inline constexpr double kCameraRateHz = 10.0;
-
 /// What camera 0 recorded while the carrier moved, and what the truth was.
 struct SimulatedFrames {
   std::vector<BoardView> views;  ///< Frames in which the board was found, in order of time.
@@ -21,12 +18,11 @@ struct SimulatedFrames {
   int num_lost_to_blur = 0;      ///< Not detected.
 };
 
-/// Fidelity `fast`: the carrier follows the timed loops exactly; at 10 Hz every corner is projected
-/// through the distorted lens and disturbed as `CornerNoise` says. Not modelled: images, dynamics,
-/// IMU, rolling shutter, jitter of the stamps.
-/// @param start  Camera clock at the motion's first instant; frames are taken at start + k / 10 s
-/// while
-///               the motion lasts, its end excluded.
+/// Fidelity `fast`: the carrier follows the timed loops exactly; at the camera's rate every corner
+/// is projected through the distorted lens and disturbed as `CornerNoise` says. Not modelled:
+/// images, dynamics, IMU, rolling shutter, jitter of the stamps.
+/// @param start  Camera clock at the motion's first instant; frames are taken at start + k / rate
+/// while the motion lasts, its end excluded.
 [[nodiscard]] SimulatedFrames SimulateFrames(const Rig& rig, const TimedMotion& motion, Time start,
                                              Rng& rng);
 /// The same corners along any path, such as the one that the arm took (fidelity `physical`).

@@ -26,6 +26,21 @@ TEST(SimulateFrames, TakesTenFramesASecond) {
   EXPECT_EQ(frames.views[13].stamp.nanoseconds(), 2'300'000'000);
 }
 
+TEST(SimulateFrames, TakesFramesAtTheRigsRate) {
+  Rig rig = PaperRig();
+  rig.camera_rate_hz = 30.0;
+  Motion still;
+  still.loops.resize(2);
+  Rng rng(1);
+  const SimulatedFrames frames =
+      SimulateFrames(rig, Plan(still, rig), Time::FromNanoseconds(1'000'000'000), rng);
+  EXPECT_EQ(frames.num_frames, 300);
+  ASSERT_EQ(frames.views.size(), 300U);
+  // Whole nanoseconds, whose rounding does not add up.
+  EXPECT_EQ(frames.views[1].stamp.nanoseconds(), 1'033'333'333);
+  EXPECT_EQ(frames.views[299].stamp.nanoseconds(), 1'000'000'000 + 9'966'666'667);
+}
+
 TEST(SimulateFrames, NoiseHasTheStatedSigmaAboutTheTrueProjection) {
   Rig rig = PaperRig();
   rig.corner_noise.stddev_px = 0.3;

@@ -13,11 +13,12 @@ namespace {
 
 constexpr double kTruthRateHz = 200.0;
 
-std::string SensorYaml(const Camera& camera) {
+std::string SensorYaml(const Rig& rig) {
+  const Camera& camera = rig.cameras.front();
   Value resolution = Value::Array();
   resolution.Append(camera.resolution.width).Append(camera.resolution.height);
   Value sensor = Value::Object();
-  sensor.Set("resolution", std::move(resolution)).Set("rate_hz", kCameraRateHz);
+  sensor.Set("resolution", std::move(resolution)).Set("rate_hz", rig.camera_rate_hz);
   return ToYaml(sensor);
 }
 
@@ -86,7 +87,7 @@ std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
   std::map<std::string, std::string> files = {
       {"imu0.csv", ImuListText(run.imu.stream)},
       {"imu.yaml", ToYaml(ToValue(rig.imu_noise))},
-      {"sensor.yaml", SensorYaml(rig.cameras.front())},
+      {"sensor.yaml", SensorYaml(rig)},
       {"target.yaml", ToYaml(ToValue(rig.board))},
       {"rig.yaml", ToYaml(ToValue(rig))},
       {"motion.yaml", TimedMotionYaml(motion)},

@@ -62,6 +62,15 @@ TEST(SimulatedRecording, OpensLikeAnyOther) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(SimulatedRecording, TellsTheRateOfTheCamera) {
+  Simulated simulated;
+  simulated.rig.camera_rate_hz = 20.0;
+  const std::map<std::string, std::string> files = SimulatedRecordingFiles(
+      simulated.rig, simulated.motion, simulated.start, simulated.frames, simulated.imu);
+  EXPECT_EQ(ParseYaml(files.at("sensor.yaml"), "").At("rate_hz").AsDouble(), 20.0);
+  EXPECT_EQ(ParseYaml(files.at("rig.yaml"), "").At("rate_hz").AsDouble(), 20.0);
+}
+
 TEST(SimulatedRecording, TellsTheBiasesAndTheNoise) {
   const Simulated simulated;
   const Value truth = ParseYaml(simulated.files.at("truth.yaml"), "truth.yaml");

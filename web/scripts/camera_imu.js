@@ -58,7 +58,15 @@ function extrinsicsCard(camera, title) {
                          element("pre", {}, camera.T_cam_imu.map((row) => {
                            return row.map((x) => x.toFixed(8).padStart(12)).join(" ");
                          }).join("\n")));
-  return card(title, note, table(["parameter", "value", "one sigma", "verdict"], rows),
+  const prediction = camera.prediction_error_px;
+  const expected = isNumber(prediction)
+      ? element("p", {class: "note"},
+                `Whoever predicts pixels from this, turning at 1 rad/s, errs by ` +
+                    `${number(prediction, 2)} px (root mean square over the image, points at ` +
+                    `0.5 m, 2 m and infinity, and all directions of turning), if the covariance ` +
+                    `tells the truth.`)
+      : "";
+  return card(title, note, table(["parameter", "value", "one sigma", "verdict"], rows), expected,
               matrix);
 }
 
@@ -85,6 +93,13 @@ function vectorText(vector, digits) {
   return numbers.length === 3 ? numbers.map((x) => number(x, digits)).join(", ") : "";
 }
 
+/** Each with as many digits as its sigma can bear, and the sigmas in brackets. */
+function vectorWithSigmas(vector, sigmas) {
+  if (list(sigmas).length !== 3) return vectorText(vector, 3);
+  const values = list(vector).map((x, i) => withSigma(x, sigmas[i]));
+  return `${values.join(", ")} (± ${vectorText(sigmas, 2)})`;
+}
+
 /** What was used and, in brackets, what was stated. */
 function noiseText(imu, key) {
   if (!isNumber(imu.noise?.[key])) return "";
@@ -94,8 +109,8 @@ function noiseText(imu, key) {
 function imuCard(imu, title) {
   return card(title, "Biases are means over the recording; residuals are of one axis.", facts([
     ["model", imu.model ?? ""],
-    ["gyroscope bias [rad/s]", vectorText(imu.gyro_bias, 3)],
-    ["accelerometer bias [m/s²]", vectorText(imu.accel_bias, 3)],
+    ["gyroscope bias [rad/s]", vectorWithSigmas(imu.gyro_bias, imu.gyro_bias_sigma)],
+    ["accelerometer bias [m/s²]", vectorWithSigmas(imu.accel_bias, imu.accel_bias_sigma)],
     ["gyroscope residuals [rad/s]", number(imu.gyro?.rms, 3)],
     ["... over stated noise", number(imu.gyro?.normalised, 3)],
     ["accelerometer residuals [m/s²]", number(imu.accel?.rms, 3)],
@@ -105,6 +120,32 @@ function imuCard(imu, title) {
     ["gyroscope noise density (stated)", noiseText(imu, "gyro_noise_density")],
     ["accelerometer noise density (stated)", noiseText(imu, "accel_noise_density")],
   ]));
+}
+
+/** The IMU as its data sheet has it, beside one with scale and misaligned axes. */
+function imuModelsCard(models) {
+  const title = "Which model of the IMU";
+  if (!models) return card(title, "", emptyNote("The motion does not tell the models apart."));
+  const used = (name) => name === models.used ? "in use" : "";
+  const rows = [
+    [models.simple ?? "", "0", "0", "0", used(models.simple)],
+    [models.richer ?? "", number(models.degrees), number(models.squared_residuals_fall, 3),
+     number(models.qaic_change, 3), used(models.richer)],
+  ];
+  const moves = list(models.change_rad_m).map((change, n) => {
+    const scaled = list(change).map((x, i) => number((i < 3 ? 180 / Math.PI : 1000) * x, 2));
+    return [`cam${n}`, scaled.slice(0, 3).join(", "), scaled.slice(3).join(", ")];
+  });
+  return card(title,
+              "Both on this recording, by one linearisation. Likelihoods are those of residuals " +
+                  "over the noise, scaled as the sigmas are. A QAIC below zero speaks for the " +
+                  "richer model.",
+              table(["model", "further parameters", "2 ln of the likelihood gained", "QAIC", ""],
+                    rows),
+              element("p", {class: "note"},
+                      `By chance alone? ${capitalised(chanceText(models.probability))}. From the ` +
+                          `first model's result to the second's the extrinsics move by:`),
+              table(["", "rotation x, y, z [degrees]", "translation x, y, z [mm]"], moves));
 }
 
 function solutionCard(result) {
@@ -369,14 +410,31 @@ function trajectoryCard(plots) {
                    plot(build, {height: kNarrow ? "380px" : "560px"})));
 }
 
+/** At most so many are listed; result.json has all. */
+const kLeftOutToList = 500;
+
+/** Folded away: names, where there are any, with their times as far as those are known; or times. */
+function whichWereLeftOut(names, times) {
+  const texts = list(names ?? times).map((_, i) => {
+    const at = isNumber(list(times)[i]) ? `${times[i].toFixed(3)} s` : "";
+    if (!names) return at;
+    return at ? `${names[i]} (${at})` : names[i];
+  });
+  if (texts.length === 0) return kNothing;
+  const more = texts.length - kLeftOutToList;
+  const shown = texts.slice(0, kLeftOutToList).join(", ") +
+      (more > 0 ? `, and ${more} more in result.json` : "");
+  return element("details", {class: "names"}, element("summary", {}, names ? "names" : "when"),
+                 shown);
+}
+
 function cameraImuLeftOutCard(result) {
   const rows = [];
   for (const [n, camera] of list(result.cameras).entries()) {
     const names = list(camera.rejected_views);
     if (names.length > 0) {
-      rows.push([`cam${n}: images that do not fit`, names.length,
-                 element("details", {class: "names"}, element("summary", {}, "names"),
-                         names.join(", "))]);
+      rows.push([`cam${n}: images that do not fit`, number(names.length),
+                 whichWereLeftOut(names, camera.rejected_view_times_s)]);
     }
     if (camera.num_outliers > 0) {
       rows.push([`cam${n}: corners that do not fit`, number(camera.num_outliers), kNothing]);
@@ -385,12 +443,17 @@ function cameraImuLeftOutCard(result) {
   for (const [n, imu] of list(result.imus).entries()) {
     for (const [name, key] of [["gyroscope", "gyro"], ["accelerometer", "accel"]]) {
       const count = imu[key]?.num_outliers;
-      if (count > 0) rows.push([`imu${n}: samples of the ${name}`, number(count), kNothing]);
+      if (count > 0) {
+        rows.push([`imu${n}: samples of the ${name}`, number(count),
+                   whichWereLeftOut(null, imu[key].outlier_times_s)]);
+      }
     }
   }
   const title = "What was left out";
   if (rows.length === 0) return card(title, "", emptyNote("Nothing was left out."));
-  return card(title, "", table(["what", "how many", "which"], rows));
+  return card(title, "Times are seconds from the trajectory's beginning; result.json has the " +
+                         "stamps as well.",
+              table(["what", "how many", "which"], rows));
 }
 
 function cameraImuSection(result) {
@@ -408,7 +471,7 @@ function cameraImuSection(result) {
   for (const [n, imu] of imus.entries()) {
     made.append(imuCard(imu, imus.length > 1 ? `IMU ${n}` : "The IMU"));
   }
-  made.append(solutionCard(result));
+  made.append(solutionCard(result), imuModelsCard(result.imu_models));
   const plots = result.plots;
   if (!plots) {
     made.append(wide(card("Pictures", "", emptyNote("Nothing was handed over for drawing."))));

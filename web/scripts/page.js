@@ -5,7 +5,9 @@ const kKinds = {
   "camera-imu": {
     title: "Camera-IMU calibration", summary: cameraImuSummary, section: cameraImuSection,
   },
+  "check": {title: "Check of a recording", summary: checkSummary, section: checkSection},
   "diff": {title: "Two calibrations compared", summary: diffSummary, section: diffSection},
+  "noise": {title: "Noise of an IMU", summary: noiseSummary, section: noiseSection},
   "learn": {title: "Learning", summary: learnSummary, section: learnSection},
   "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
 };

@@ -49,24 +49,41 @@ function poseTable(T, sigmas, name) {
                rows);
 }
 
-/** The cameras as pyramids in the frame of the first; those not related to it are not drawn. */
-function rigPlot(cameras) {
+/** From which camera before it a camera's place is known, and how: null where from none. */
+function relationOf(camera, n) {
+  if (isPose(camera.T_cn_cnm1)) return {from: n - 1, pose: camera.T_cn_cnm1, sigmas: `cam${n}`};
+  const earlier = camera.earlier_relation;
+  if (!isPose(earlier?.T_cn_camera)) return null;
+  const from = Number(String(earlier.camera).slice("cam".length));
+  return {from, pose: earlier.T_cn_camera, sigmas: `cam${n}.from_cam${from}`};
+}
+
+/** The first calibrated camera (r) and those that are related to it: [{n, T_cn_cr}]. */
+function placedCameras(cameras) {
+  const poses = [];
+  let root = null;
+  for (const [n, camera] of cameras.entries()) {
+    const relation = relationOf(camera, n);
+    const before = relation && poses[relation.from];
+    const isRoot = root === null && camera.intrinsics && !relation;
+    if (isRoot) root = n;
+    poses.push(isRoot ? kIdentity : before ? product(relation.pose, before) : null);
+  }
+  return poses.flatMap((T_cn_cr, n) => T_cn_cr ? [{n, T_cn_cr}] : []);
+}
+
+/** Cameras as pyramids in the frame of the first of them. */
+function rigPlot(cameras, placed) {
   return plot(() => {
-    const poses = [kIdentity];
-    for (const [n, camera] of cameras.entries()) {
-      if (n === 0) continue;
-      if (!isPose(camera.T_cn_cnm1)) break;
-      poses.push(product(camera.T_cn_cnm1, poses[n - 1]));
-    }
-    const centres = poses.map((T_cn_c0) => inverse(T_cn_c0).slice(0, 3).map((row) => row[3]));
+    const centres = placed.map(({T_cn_cr}) => inverse(T_cn_cr).slice(0, 3).map((row) => row[3]));
     const depth = 0.4 * Math.max(extent(centres), 0.02);
-    const data = poses.map((T_cn_c0, n) => {
-      const T_c0_cn = inverse(T_cn_c0);
+    const data = placed.map(({T_cn_cr, n}) => {
+      const T_cr_cn = inverse(T_cn_cr);
       const rays = frustum(cameras[n].intrinsics, cameras[n].resolution ?? [640, 480], depth);
       const colour = kPalette[n % kPalette.length];
       return {
         type: "scatter3d", mode: "lines", name: `camera ${n}`, line: {width: 5, color: colour},
-        ...polylines(rays.map((ray) => ray.map((p) => upright(transformed(T_c0_cn, p))))),
+        ...polylines(rays.map((ray) => ray.map((p) => upright(transformed(T_cr_cn, p))))),
         hovertemplate: `camera ${n}<extra></extra>`,
       };
     });
@@ -86,17 +103,23 @@ function rigCards(result) {
   const made = card("The rig", "From each camera to the next: T_cn_cnm1 of Kalibr.");
   for (const [n, camera] of cameras.entries()) {
     if (n === 0) continue;
-    const title = element("h4", {}, `From camera ${n - 1} to camera ${n}`);
-    if (!isPose(camera.T_cn_cnm1)) {
-      made.append(title, emptyNote("They share too few frames to be related."));
+    const relation = relationOf(camera, n);
+    const title = element("h4", {}, `From camera ${relation?.from ?? n - 1} to camera ${n}`);
+    if (!relation) {
+      const isMissing = [camera, cameras[n - 1]].some((either) => !either.intrinsics);
+      made.append(title, emptyNote(isMissing ? "One of them was not calibrated."
+                                             : "They share too few frames to be related."));
       continue;
     }
-    const baseline = Math.hypot(...camera.T_cn_cnm1.slice(0, 3).map((row) => row[3]));
-    const frames = isNumber(camera.num_shared_frames)
+    const baseline = Math.hypot(...relation.pose.slice(0, 3).map((row) => row[3]));
+    const frames = relation.from === n - 1 && isNumber(camera.num_shared_frames)
         ? `, from ${counted(camera.num_shared_frames, "shared frame", "shared frames")}` : "";
-    made.append(title, poseTable(camera.T_cn_cnm1, sigmas, `cam${n}`),
+    made.append(title, poseTable(relation.pose, sigmas, relation.sigmas),
                 element("p", {class: "note"},
                         `Baseline ${number(1000 * baseline, 6)} mm${frames}.`));
   }
-  return [made, card("The rig in the frame of camera 0", "", rigPlot(cameras))];
+  const placed = placedCameras(cameras);
+  if (placed.length === 0) return [made];
+  return [made, card(`The rig in the frame of camera ${placed[0].n}`, "",
+                     rigPlot(cameras, placed))];
 }

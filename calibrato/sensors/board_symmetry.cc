@@ -1,8 +1,12 @@
-#include "calibrato/detection/board_symmetry.h"
+#include "calibrato/sensors/board_symmetry.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
+
+#include "calibrato/geometry/so3.h"
 
 namespace calibrato {
 namespace {
@@ -51,6 +55,18 @@ struct Symmetry {
   std::vector<Numbering> operator()(const Charuco&) const { return {}; }
 };
 
+struct Advice {
+  std::string operator()(const Checkerboard&) const {
+    return "use a checkerboard with an odd sum of rows and columns";
+  }
+  std::string operator()(const CircleGrid& board) const {
+    if (board.asymmetric) return "use an asymmetric circle grid with an odd number of rows";
+    return "use an asymmetric circle grid with an odd number of rows, or another kind of board";
+  }
+  std::string operator()(const AprilGrid&) const { return ""; }
+  std::string operator()(const Charuco&) const { return ""; }
+};
+
 // The view's columns by their numbers in a numbering, -1 where the view has no such point.
 std::vector<int> ColumnsByNumber(const BoardView& view, const Numbering& numbering) {
   std::vector<int> column_of_id(numbering.size(), -1);
@@ -85,34 +101,63 @@ std::vector<std::vector<int>> OtherNumberings(const Board& board) {
   return std::visit(Symmetry(), board);
 }
 
+std::string SidedBoardAdvice(const Board& board) { return std::visit(Advice(), board); }
+
+std::vector<BoardTurn> BoardTurns(const Board& board) {
+  const Eigen::Matrix3Xd points_g = BoardPoints(board);
+  const Eigen::Vector3d middle_g = points_g.rowwise().mean();
+  std::vector<BoardTurn> turns;
+  for (std::vector<int>& numbering : OtherNumberings(board)) {
+    double sine = 0.0;
+    double cosine = 0.0;
+    for (size_t k = 0; k < numbering.size(); ++k) {
+      const Eigen::Vector3d from = points_g.col(static_cast<Eigen::Index>(k)) - middle_g;
+      const Eigen::Vector3d to = points_g.col(numbering[k]) - middle_g;
+      sine += from.x() * to.y() - from.y() * to.x();
+      cosine += from.dot(to);
+    }
+    const Eigen::Matrix3d R = ExpSo3({0.0, 0.0, std::atan2(sine, cosine)});
+    turns.push_back({std::move(numbering), {R, middle_g - R * middle_g}});
+  }
+  return turns;
+}
+
+std::vector<int> ColumnsInOrder(const BoardView& view, const std::vector<int>& numbering) {
+  std::vector<int> columns = ColumnsByNumber(view, numbering);
+  std::erase(columns, -1);
+  return columns;
+}
+
+BoardView Renumbered(const BoardView& view, const std::vector<int>& numbering,
+                     const Eigen::Matrix3Xd& points_g) {
+  BoardView numbered = view;
+  numbered.corner_ids.clear();
+  const std::vector<int> columns = ColumnsByNumber(view, numbering);
+  Eigen::Index k = 0;
+  for (size_t id = 0; id < columns.size(); ++id) {
+    if (columns[id] < 0) continue;
+    numbered.corner_ids.push_back(static_cast<int>(id));
+    numbered.pixels.col(k) = view.pixels.col(columns[id]);
+    numbered.points_g.col(k++) = points_g.col(static_cast<Eigen::Index>(id));
+  }
+  return numbered;
+}
+
 BoardView NumberedAsBefore(const BoardView& view, const BoardView& before,
                            const std::vector<std::vector<int>>& numberings,
                            const Eigen::Matrix3Xd& points_g) {
   if (numberings.empty()) return view;
   Numbering as_it_is(numberings.front().size());
   std::iota(as_it_is.begin(), as_it_is.end(), 0);
-  std::vector<int> best = ColumnsByNumber(view, as_it_is);
-  double least = MeanSquaredTurn(view, best, before);
-  bool is_changed = false;
+  double least = MeanSquaredTurn(view, ColumnsByNumber(view, as_it_is), before);
+  const Numbering* best = nullptr;
   for (const Numbering& numbering : numberings) {
-    std::vector<int> columns = ColumnsByNumber(view, numbering);
-    const double turn = MeanSquaredTurn(view, columns, before);
+    const double turn = MeanSquaredTurn(view, ColumnsByNumber(view, numbering), before);
     if (!(turn < least)) continue;
     least = turn;
-    best = std::move(columns);
-    is_changed = true;
+    best = &numbering;
   }
-  if (!is_changed) return view;
-  BoardView numbered = view;
-  numbered.corner_ids.clear();
-  Eigen::Index k = 0;
-  for (size_t id = 0; id < best.size(); ++id) {
-    if (best[id] < 0) continue;
-    numbered.corner_ids.push_back(static_cast<int>(id));
-    numbered.pixels.col(k) = view.pixels.col(best[id]);
-    numbered.points_g.col(k++) = points_g.col(static_cast<Eigen::Index>(id));
-  }
-  return numbered;
+  return best == nullptr ? view : Renumbered(view, *best, points_g);
 }
 
 }  // namespace calibrato

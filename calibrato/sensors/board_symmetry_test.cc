@@ -1,8 +1,9 @@
-#include "calibrato/detection/board_symmetry.h"
+#include "calibrato/sensors/board_symmetry.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace calibrato {
@@ -39,6 +40,16 @@ TEST(BoardSymmetry, OfCircleGridsFollowsFromTheirRows) {
   EXPECT_THAT(OtherNumberings(CircleGrid{10, 4, 0.1, true}), SizeIs(1));
 }
 
+TEST(BoardSymmetry, TheAdviceIsABoardWithoutTurns) {
+  EXPECT_EQ(SidedBoardAdvice(Checkerboard{6, 8, 0.1, 0.1}),
+            "use a checkerboard with an odd sum of rows and columns");
+  for (const CircleGrid& board : {CircleGrid{5, 6, 0.1, false}, CircleGrid{10, 4, 0.1, true}}) {
+    const std::string advice = SidedBoardAdvice(board);
+    EXPECT_NE(advice.find("asymmetric circle grid with an odd number of rows"), std::string::npos);
+  }
+  EXPECT_EQ(SidedBoardAdvice(AprilGrid{6, 6, 0.1, 0.3}), "");
+}
+
 TEST(BoardSymmetry, NumberingsPutTheBoardsPointsWhereItsPointsAre) {
   // A turn of the board onto itself: distances between points of two numbers stay.
   for (const Board& board :
@@ -56,6 +67,49 @@ TEST(BoardSymmetry, NumberingsPutTheBoardsPointsWhereItsPointsAre) {
         return (p.col(1) - p.col(0)).cross(p.col(p.cols() - 1) - p.col(0)).z();
       };
       EXPECT_NEAR(cross(turned), cross(points), 1e-12);
+    }
+  }
+}
+
+TEST(BoardSymmetry, TurnsMoveThePointsAsTheirNumbersDo) {
+  for (const Board& board :
+       {Board(Checkerboard{6, 6, 0.1, 0.1}), Board(Checkerboard{4, 6, 0.1, 0.2}),
+        Board(CircleGrid{10, 4, 0.1, true}), Board(CircleGrid{5, 5, 0.1, false})}) {
+    const Eigen::Matrix3Xd points_g = BoardPoints(board);
+    const std::vector<BoardTurn> turns = BoardTurns(board);
+    ASSERT_THAT(turns, SizeIs(OtherNumberings(board).size()));
+    for (const BoardTurn& turn : turns) {
+      for (Eigen::Index k = 0; k < points_g.cols(); ++k) {
+        const int other = turn.numbering[static_cast<size_t>(k)];
+        EXPECT_LT((turn.T_g_turned * points_g.col(k) - points_g.col(other)).norm(), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(BoardSymmetry, ARenumberedViewShowsTheBoardTurned) {
+  const Board board = Checkerboard{6, 6, 0.1, 0.1};
+  const Eigen::Matrix3Xd points_g = BoardPoints(board);
+  BoardView view = ViewOf(board, 0.4);
+  // Without two corners, so that columns and numbers differ.
+  std::vector<int> kept = view.corner_ids;
+  kept.erase(kept.begin() + 7);
+  kept.erase(kept.begin());
+  view.corner_ids = kept;
+  view.pixels = view.pixels(Eigen::all, kept).eval();
+  view.points_g = view.points_g(Eigen::all, kept).eval();
+  for (const BoardTurn& turn : BoardTurns(board)) {
+    const BoardView numbered = Renumbered(view, turn.numbering, points_g);
+    EXPECT_TRUE(std::is_sorted(numbered.corner_ids.begin(), numbered.corner_ids.end()));
+    const std::vector<int> columns = ColumnsInOrder(view, turn.numbering);
+    ASSERT_THAT(columns, SizeIs(kept.size()));
+    for (size_t k = 0; k < columns.size(); ++k) {
+      const auto now = static_cast<Eigen::Index>(k);
+      EXPECT_EQ(numbered.pixels.col(now), view.pixels.col(columns[k]));
+      EXPECT_EQ(numbered.points_g.col(now), points_g.col(numbered.corner_ids[k]));
+      EXPECT_LT(
+          (turn.T_g_turned * numbered.points_g.col(now) - view.points_g.col(columns[k])).norm(),
+          1e-12);
     }
   }
 }
