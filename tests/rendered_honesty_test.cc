@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -159,14 +160,22 @@ TEST(RenderedHonesty, EffectByEffect) {
       {"clock drift 50 ppm", [](Rig* rig) { rig->imu_disturbances.clock_drift_ppm = 50.0; }},
   };
   const int n = FullSample() ? 10 : 1;
-  const std::function<void(Rig*)> all = [&](Rig* rig) {
-    for (const auto& [name, effect] : effects) effect(rig);
+  const auto but = [&](const std::vector<std::string>& left_out) {
+    return [&effects, left_out](Rig* rig) {
+      for (const auto& [name, effect] : effects) {
+        if (std::ranges::find(left_out, name) == left_out.end()) effect(rig);
+      }
+    };
   };
   const size_t num_tried = FullSample() ? effects.size() : 2;
   for (size_t i = 0; i < num_tried; ++i) {
     EXPECT_EQ(Judge(effects[i].first, n, effects[i].second).num_not_converged, 0);
   }
-  EXPECT_EQ(Judge("all of them", n, all).num_not_converged, 0);
+  EXPECT_EQ(Judge("all of them", n, but({})).num_not_converged, 0);
+  // Those two shift the time offset, which the truth does not contain.
+  if (!FullSample()) return;
+  const auto rest = but({"rolling shutter 30 us", "IMU low-pass 60 Hz"});
+  EXPECT_EQ(Judge("all but shutter and low-pass", n, rest).num_not_converged, 0);
 }
 
 }  // namespace

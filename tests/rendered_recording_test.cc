@@ -103,5 +103,45 @@ TEST(RenderedRecording, CornersInTheFullSceneAreWhereTheyAreProjected) {
               errors.deviation.y(), errors.worst);
 }
 
+// The figures of docs/simulation.md, fitted to boards that move at constant speed, on the arm's own
+// motion: its blur reaches 2 px with this exposure. (A longer one would also see accelerations.)
+TEST(RenderedRecording, CornerNoiseIsWhatTheFittedModelPredicts) {
+  Rig rig = PaperRig();
+  rig.exposure_s = 0.02;
+  rig.image_disturbances.defocus_px = 0.5;
+  rig.image_disturbances.read_noise = 1.5;
+  rig.image_disturbances.shot_noise = 0.02;
+  const CornerNoise fitted{.stddev_px = 0.0054, .blur_factor = 0.0020, .blur_knee_px = 4.6};
+  const CarrierPath path = Executed(rig);
+  const RenderedCamera camera(rig);
+  const CameraModel& lens = rig.cameras[0].model;
+  const Eigen::Matrix3Xd points_g = BoardPoints(rig.board);
+  double measured = 0.0;
+  double predicted = 0.0;
+  double longest = 0.0;
+  const double step_s = FullSample() ? 0.1 : 0.4;
+  for (double t_s = 0.05; t_s < path.duration_s; t_s += step_s) {
+    Rng noise = Rng(2).Stream("noise", static_cast<uint64_t>(1000.0 * t_s));
+    const std::optional<BoardView> view = DetectBoard(camera.Take(path, t_s, noise), rig.board);
+    ASSERT_TRUE(view) << t_s;
+    const Rigid3 first = BoardInCamera(rig, path.at(t_s - 0.5 * rig.exposure_s).T_b_e);
+    const Rigid3 middle = BoardInCamera(rig, path.at(t_s).T_b_e);
+    const Rigid3 last = BoardInCamera(rig, path.at(t_s + 0.5 * rig.exposure_s).T_b_e);
+    double blur = 0.0;
+    for (Eigen::Index k = 0; k < points_g.cols(); ++k) {
+      const Eigen::Vector3d p = points_g.col(k);
+      measured += (view->pixels.col(k) - *lens.Project(middle * p)).squaredNorm();
+      blur += (*lens.Project(last * p) - *lens.Project(first * p)).norm() /
+              static_cast<double>(points_g.cols());
+    }
+    longest = std::max(longest, blur);
+    predicted += 2.0 * static_cast<double>(points_g.cols()) * std::pow(fitted.Stddev(blur), 2);
+  }
+  std::printf("blur up to %.1f px, measured over predicted %.3f\n", longest,
+              std::sqrt(measured / predicted));
+  EXPECT_GT(longest, 1.5);
+  EXPECT_NEAR(std::sqrt(measured / predicted), 1.0, FullSample() ? 0.15 : 0.3);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -415,6 +415,39 @@ TEST(Simulate, NamesTheArmWhereThereAreNoDynamics) {
                 {"physical", "--carrier arm", "--fidelity fast"});
 }
 
+TEST(Simulate, WritesAPhysicalRecordingAndSaysHowTheArmFollowed) {
+  const SimulationInput input;
+  const std::string recording = input.scratch.Path("recording");
+  const Ended ended =
+      RunProgram(With(input.Simulate(), {"--carrier", "arm", "--fidelity", "physical",
+                                         "--scale-to-fit", "--json", "--out", recording}));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  for (const char* key : {"\"fidelity\": \"physical\"", "max_position_error_m",
+                          "max_rotation_error_rad", "max_torque_share"}) {
+    EXPECT_NE(ended.out.find(key), std::string::npos) << ended.out;
+  }
+  EXPECT_TRUE(FilesBelow(recording).contains("cam0_corners.csv"));
+}
+
+TEST(Simulate, WritesARenderedRecordingWithItsVideo) {
+  const SimulationInput input;
+  const std::string recording = input.scratch.Path("recording");
+  const Ended ended =
+      RunProgram(With(input.Simulate(), {"--fidelity", "rendered", "--video", "--out", recording}));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  const auto files = FilesBelow(recording);
+  EXPECT_TRUE(files.contains("video.avi"));
+  EXPECT_TRUE(files.contains("truth_poses.csv"));
+  EXPECT_FALSE(files.contains("cam0_corners.csv"));
+  EXPECT_TRUE(files.contains("cam0/data/1600000000000000000.png"));
+}
+
+TEST(Simulate, SaysThatOnlyRenderedImagesMakeAVideo) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--video"}),
+                {"--video", "fidelity fast has none", "add --fidelity rendered"});
+}
+
 TEST(Simulate, SaysWhatRenderingLacksAndDoesWithoutIt) {
   const SimulationInput input;
   setenv("MUJOCO_GL", "off", 1);
@@ -550,7 +583,8 @@ TEST(CommandLine, HelpOfEveryCommandNamesItsOptions) {
       {{"calibrate", "camera-imu"},
        {"recording", "--target", "--cameras", "--camera-result", "--imu", "--imu-model",
         "--estimate-noise", "--joint-intrinsics", "--max-iterations", "--gravity", "--out"}},
-      {{"simulate"}, {"--rig", "--motion", "--carrier", "--fidelity", "--scale-to-fit", "--out"}},
+      {{"simulate"},
+       {"--rig", "--motion", "--carrier", "--fidelity", "--scale-to-fit", "--video", "--out"}},
       {{"learn"},
        {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--episodes", "--resume",
         "--out"}},

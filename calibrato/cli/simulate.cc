@@ -36,7 +36,7 @@ struct Options {
 // Outside view and camera's view side by side, a picture a frame.
 class MotionVideo {
  public:
-  explicit MotionVideo(const Rig& rig) : outside_(rig) {
+  explicit MotionVideo(const Rig& rig) : outside_(rig), rate_hz_(rig.camera_rate_hz) {
     std::string name = (std::filesystem::temp_directory_path() / "calibrato-XXXXXX").string();
     if (mkdtemp(name.data()) == nullptr) {
       throw InputError({"cannot write the video", name, "no temporary folder can be made",
@@ -54,7 +54,7 @@ class MotionVideo {
 
   void Add(const CarrierPath& path, const SimulatedImage& image) {
     const RgbImage picture = SideBySide(outside_.Draw(path, image.t_s), image.image);
-    if (!file_) file_.emplace(Name(), picture.resolution, kCameraRateHz);
+    if (!file_) file_.emplace(Name(), picture.resolution, rate_hz_);
     file_->Add(picture);
   }
 
@@ -69,6 +69,7 @@ class MotionVideo {
   [[nodiscard]] std::string Name() const { return (folder_ / "video.avi").string(); }
 
   OutsideView outside_;
+  double rate_hz_;
   std::filesystem::path folder_;
   std::optional<VideoWriter> file_;
 };

@@ -14,11 +14,20 @@ namespace {
 
 using Eigen::Vector2d;
 
-// Sums light over a raster of `fineness` cells a pixel and direction.
+// A part of an image.
+struct Window {
+  int left;
+  int top;
+  Resolution size;
+};
+
+// Sums light over a window, in `fineness` cells a pixel and direction.
 class SceneSum {
  public:
-  SceneSum(Resolution resolution, int fineness)
-      : fineness_(fineness), sum_({resolution.width * fineness, resolution.height * fineness}) {}
+  SceneSum(const Window& window, int fineness)
+      : origin_(window.left, window.top),
+        fineness_(fineness),
+        sum_({window.size.width * fineness, window.size.height * fineness}) {}
 
   // Adds light [grey levels] on the sheet, and more (or less) of it where there is ink.
   void AddBoard(const LensOutline& outline, const BoardPattern& pattern, double sheet, double ink) {
@@ -64,7 +73,7 @@ class SceneSum {
   LensOutline::Sink SideSink(double light) {
     return [this, light](const Vector2d& from, const Vector2d& to) {
       const auto cell = [this](const Vector2d& pixel) -> Vector2d {
-        return fineness_ * (pixel.array() + 0.5);
+        return fineness_ * ((pixel - origin_).array() + 0.5);
       };
       sum_.AddSide(cell(from), cell(to), light);
     };
@@ -83,9 +92,53 @@ class SceneSum {
     return turns;
   }
 
+  Vector2d origin_;
   int fineness_;
   CoverageSum sum_;
 };
+
+Window WholeOf(Resolution resolution) { return {0, 0, resolution}; }
+
+// What the sheet may cover at any of the outlines, and as much around it as blur spreads.
+Window WindowOf(const BoardPattern& pattern, const std::vector<LensOutline>& outlines,
+                const Camera& camera, double blur_px) {
+  const Vector2d low = pattern.sheet.min();
+  const Vector2d high = pattern.sheet.max();
+  const BoardPattern::Outline sheet = {low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+  Eigen::AlignedBox2d extent;
+  for (const LensOutline& outline : outlines) {
+    // Of a sheet that goes around the back of the camera anything may be in the image.
+    if (pattern.sheet.contains(outline.behind())) return WholeOf(camera.resolution);
+    for (size_t k = 0; k < sheet.size(); ++k) {
+      outline.AddLine(sheet[k], sheet[(k + 1) % sheet.size()],
+                      [&](const Vector2d& from, const Vector2d& to) {
+                        extent.extend(from);
+                        extent.extend(to);
+                      });
+    }
+  }
+  const double margin = 2.0 + 6.0 * blur_px;
+  const auto [width, height] = camera.resolution;
+  const auto clamped = [](double x, int size) {
+    return static_cast<int>(std::clamp(x, 0.0, static_cast<double>(size)));
+  };
+  const int left = clamped(std::floor(extent.min().x() - margin), width - 1);
+  const int top = clamped(std::floor(extent.min().y() - margin), height - 1);
+  const int right = std::max(clamped(std::ceil(extent.max().x() + margin), width), left + 1);
+  const int bottom = std::max(clamped(std::ceil(extent.max().y() + margin), height), top + 1);
+  return {left, top, {right - left, bottom - top}};
+}
+
+// An image that is 0 outside of the window.
+std::vector<float> InWhole(const std::vector<float>& pixels, const Window& window,
+                           Resolution resolution) {
+  std::vector<float> whole(1UL * resolution.width * resolution.height, 0.0F);
+  for (int v = 0; v < window.size.height; ++v) {
+    std::copy_n(pixels.begin() + 1L * window.size.width * v, window.size.width,
+                whole.begin() + 1L * resolution.width * (window.top + v) + window.left);
+  }
+  return whole;
+}
 
 bool IsBeforeTheBoard(const Rigid3& T_c_g) { return T_c_g.Inverse().t.z() > 0.0; }
 
@@ -106,7 +159,7 @@ Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera, const Ri
                      const Scene& scene) {
   assert(scene.blur_px >= 0.0);
   const int fineness = CellsPerPixel(scene.blur_px);
-  SceneSum sum(camera.resolution, fineness);
+  SceneSum sum(WholeOf(camera.resolution), fineness);
   if (IsBeforeTheBoard(T_c_g)) {
     sum.AddBoard(LensOutline(camera, T_c_g), pattern, scene.white - scene.background,
                  scene.black - scene.white);
@@ -121,17 +174,26 @@ BoardLayer RenderBoardLayer(const BoardPattern& pattern, const Camera& camera,
                             const std::vector<PoseOfRow>& instants, const Scene& scene) {
   assert(!instants.empty() && scene.blur_px >= 0.0);
   const int fineness = CellsPerPixel(scene.blur_px);
-  const double share = 1.0 / static_cast<double>(instants.size());
-  SceneSum light(camera.resolution, fineness);
-  SceneSum coverage(camera.resolution, fineness);
+  std::vector<LensOutline> outlines;
   for (const PoseOfRow& pose_of_row : instants) {
     if (!IsBeforeTheBoard(pose_of_row(0.5 * (camera.resolution.height - 1)))) continue;
-    const LensOutline outline(camera, pose_of_row);
+    outlines.emplace_back(camera, pose_of_row);
+  }
+  const size_t num_pixels = 1UL * camera.resolution.width * camera.resolution.height;
+  if (outlines.empty()) {
+    return {{camera.resolution, std::vector<float>(num_pixels)}, std::vector<float>(num_pixels)};
+  }
+  const Window window = WindowOf(pattern, outlines, camera, scene.blur_px);
+  const double share = 1.0 / static_cast<double>(instants.size());
+  SceneSum light(window, fineness);
+  SceneSum coverage(window, fineness);
+  for (const LensOutline& outline : outlines) {
     light.AddBoard(outline, pattern, share * scene.white, share * (scene.black - scene.white));
     coverage.AddSheetAlone(outline, pattern, share);
   }
   const auto pixels = [&](SceneSum sum) {
-    return Pixels(std::move(sum).Finish(0.0), camera.resolution, fineness, scene.blur_px);
+    return InWhole(Pixels(std::move(sum).Finish(0.0), window.size, fineness, scene.blur_px), window,
+                   camera.resolution);
   };
   return {{camera.resolution, pixels(std::move(light))}, pixels(std::move(coverage))};
 }

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "calibrato/base/progress.h"
 #include "calibrato/rendering/blur.h"
 #include "calibrato/rendering/render_board.h"
 #include "calibrato/simulation/fast_simulation.h"
@@ -278,7 +279,9 @@ int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rn
   const Duration period = Duration::FromSeconds(1.0 / kCameraRateHz);
   const Duration end = Duration::FromSeconds(path.duration_s);
   int num_dropped = 0;
+  Progress progress("rendering", static_cast<int64_t>(std::ceil(path.duration_s * kCameraRateHz)));
   for (int64_t k = 0; period * k < end; ++k) {
+    progress.Advance();
     const Duration elapsed = period * k;
     Rng noise = rng.Stream("image", static_cast<uint64_t>(k));
     // Drawn for every setting alike.
