@@ -276,13 +276,14 @@ GreyImage RenderedCamera::Take(const CarrierPath& path, double t_s, Rng& noise) 
 int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rng& rng,
                    const std::function<void(SimulatedImage)>& sink) {
   const RenderedCamera camera(rig);
-  const Duration period = Duration::FromSeconds(1.0 / kCameraRateHz);
   const Duration end = Duration::FromSeconds(path.duration_s);
   int num_dropped = 0;
-  Progress progress("rendering", static_cast<int64_t>(std::ceil(path.duration_s * kCameraRateHz)));
-  for (int64_t k = 0; period * k < end; ++k) {
+  Progress progress("rendering",
+                    static_cast<int64_t>(std::ceil(path.duration_s * rig.camera_rate_hz)));
+  for (int64_t k = 0;; ++k) {
     progress.Advance();
-    const Duration elapsed = period * k;
+    const Duration elapsed = Duration::FromSeconds(static_cast<double>(k) / rig.camera_rate_hz);
+    if (!(elapsed < end)) break;
     Rng noise = rng.Stream("image", static_cast<uint64_t>(k));
     // Drawn for every setting alike.
     const bool is_dropped = noise.Uniform() < rig.image_disturbances.drop_probability;
