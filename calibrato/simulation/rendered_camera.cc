@@ -281,9 +281,9 @@ int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rn
   Progress progress("rendering",
                     static_cast<int64_t>(std::ceil(path.duration_s * rig.camera_rate_hz)));
   for (int64_t k = 0;; ++k) {
-    progress.Advance();
     const Duration elapsed = Duration::FromSeconds(static_cast<double>(k) / rig.camera_rate_hz);
     if (!(elapsed < end)) break;
+    progress.Advance();
     Rng noise = rng.Stream("image", static_cast<uint64_t>(k));
     // Drawn for every setting alike.
     const bool is_dropped = noise.Uniform() < rig.image_disturbances.drop_probability;
