@@ -8,78 +8,51 @@
 #include <string_view>
 #include <utility>
 
-#include "calibrato/base/input_error.h"
 #include "calibrato/recording/byte_fields.h"
-#include "calibrato/recording/chunk_cache.h"
+#include "calibrato/recording/chunked_log.h"
 #include "calibrato/recording/mcap_format.h"
-#include "calibrato/recording/random_access_file.h"
 
 namespace calibrato {
 namespace {
 
-constexpr uint64_t kInFile = UINT64_MAX;  // a place outside of every chunk
 constexpr uint64_t kMaxDescriptionBytes = uint64_t{16} << 20;
 
-class Mcap : public MessageLog {
+class Mcap final : public ChunkedLog {
  public:
   explicit Mcap(const std::string& path)
-      : file_(std::make_shared<const RandomAccessFile>(path)), cache_(file_) {}
-
-  const std::string& path() const override { return file_->path(); }
-
-  void ForEach(const Visit& visit) override {
-    visit_ = &visit;
-    try {
-      CheckEnd();
-      ReadRecords();
-    } catch (const Damage& damage) {
-      Fail(damage);
-    }
-  }
-
-  std::string Read(const MessagePlace& place) const override {
-    try {
-      if (place.container == kInFile) return file_->Read(place.offset, place.size);
-      return cache_.Get(chunks_.at(place.container))->substr(place.offset, place.size);
-    } catch (const Damage& damage) {
-      Fail(damage);
-    }
-  }
+      : ChunkedLog(path, "cannot read MCAP file",
+                   "copy it again, or save what is readable by 'mcap recover'") {}
 
  private:
-  [[noreturn]] void Fail(const Damage& damage) const {
-    throw InputError({"cannot read MCAP file", path(), damage.why,
-                      "copy it again, or save what is readable by 'mcap recover'"});
-  }
-
   // A recorder that is stopped hard leaves no end.
   void CheckEnd() const {
-    const uint64_t size = file_->size();
+    const uint64_t size = file().size();
     if (size < 2 * kMcapMagic.size() ||
-        file_->Read(size - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) {
+        file().Read(size - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic) {
       throw Damage{"it is truncated: it does not end as such files do"};
     }
   }
 
-  void ReadRecords() {
+  void ReadRecords() override {
+    CheckEnd();
     uint64_t position = kMcapMagic.size();
     while (true) {
-      const std::string head = file_->Read(position, kMcapRecordHeadBytes);
+      const std::string head = file().Read(position, kMcapRecordHeadBytes);
       ByteFields fields(head);
       const auto record = static_cast<McapRecord>(fields.Take<uint8_t>());
       const auto size = fields.Take<uint64_t>();
       const uint64_t begin = position + kMcapRecordHeadBytes;
-      if (size > file_->size() - begin) {
+      if (size > file().size() - begin) {
         throw Damage{"it ends inside of the record at byte " + std::to_string(position)};
       }
       if (record == McapRecord::kDataEnd || record == McapRecord::kFooter) return;
       if (record == McapRecord::kChunk) {
         ReadChunk(begin, size);
       } else if (record == McapRecord::kMessage) {
-        VisitMessage(file_->Read(begin, size), {kInFile, begin, size});
+        VisitMessage(file().Read(begin, size), InFile(begin, size));
       } else if (record == McapRecord::kSchema || record == McapRecord::kChannel) {
         if (size > kMaxDescriptionBytes) throw Damage{"a description of a topic has no end"};
-        Describe(record, file_->Read(begin, size));
+        Describe(record, file().Read(begin, size));
       }
       // All others, also those that later versions add, say nothing of messages.
       position = begin + size;
@@ -89,7 +62,7 @@ class Mcap : public MessageLog {
   void ReadChunk(uint64_t begin, uint64_t size) {
     // All fields but the last: two times, the size, the checksum, the compression's name.
     constexpr uint64_t kMaxHeadBytes = 8 + 8 + 8 + 4 + 4 + 64 + 8;
-    const std::string head = file_->Read(begin, std::min(size, kMaxHeadBytes));
+    const std::string head = file().Read(begin, std::min(size, kMaxHeadBytes));
     ByteFields fields(head);
     fields.TakeBytes(8 + 8);
     Chunk chunk;
@@ -106,18 +79,17 @@ class Mcap : public MessageLog {
     if (chunk.packed_size > size - fields.position()) {
       throw Damage{"a chunk is larger than its record"};
     }
-    const auto number = chunks_.size();
-    chunks_.push_back(chunk);
-    const std::shared_ptr<const std::string> bytes = cache_.Get(chunk);
+    const size_t number = Add(chunk);
+    const std::shared_ptr<const std::string> bytes = Unpacked(number);
     const auto* data = reinterpret_cast<const Bytef*>(bytes->data());
     if (checksum != 0 && crc32_z(0, data, bytes->size()) != checksum) {
       throw Damage{"the checksum of the chunk at byte " + std::to_string(begin) +
                    " does not match"};
     }
-    ReadChunkRecords(chunk, number, *bytes);
+    ReadChunkRecords(number, *bytes);
   }
 
-  void ReadChunkRecords(const Chunk& chunk, size_t number, std::string_view bytes) {
+  void ReadChunkRecords(size_t chunk, std::string_view bytes) {
     ByteFields fields(bytes);
     while (!fields.at_end()) {
       const auto record = static_cast<McapRecord>(fields.Take<uint8_t>());
@@ -125,11 +97,8 @@ class Mcap : public MessageLog {
       if (record == McapRecord::kSchema || record == McapRecord::kChannel) {
         Describe(record, content);
       } else if (record == McapRecord::kMessage) {
-        // A message of a chunk that is not packed is read again without the rest of the chunk.
         const uint64_t offset = fields.position() - content.size();
-        VisitMessage(content, chunk.compression == Compression::kNone
-                                  ? MessagePlace{kInFile, chunk.offset + offset, content.size()}
-                                  : MessagePlace{number, offset, content.size()});
+        VisitMessage(content, InChunk(chunk, offset, content.size()));
       }
     }
   }
@@ -159,16 +128,11 @@ class Mcap : public MessageLog {
     fields.TakeBytes(kMcapMessageHeadBytes - sizeof(uint16_t));
     place.offset += kMcapMessageHeadBytes;
     place.size -= kMcapMessageHeadBytes;
-    if (topic->second.type.empty()) return;
-    (*visit_)(topic->second, place, content.substr(kMcapMessageHeadBytes));
+    Found(topic->second, place, content.substr(kMcapMessageHeadBytes));
   }
 
-  std::shared_ptr<const RandomAccessFile> file_;
-  ChunkCache cache_;
-  std::vector<Chunk> chunks_;
   std::map<uint16_t, std::string> types_;  // by the schema's number
   std::map<uint16_t, LogTopic> topics_;    // by the channel's
-  const Visit* visit_ = nullptr;
 };
 
 }  // namespace

@@ -6,17 +6,14 @@
 #include <string_view>
 #include <utility>
 
-#include "calibrato/base/input_error.h"
 #include "calibrato/recording/byte_fields.h"
-#include "calibrato/recording/chunk_cache.h"
-#include "calibrato/recording/random_access_file.h"
+#include "calibrato/recording/chunked_log.h"
 
 namespace calibrato {
 namespace {
 
 constexpr uint64_t kMagicBytes = 13;  // "#ROSBAG V2.0" and the end of the line
 constexpr uint64_t kMaxHeaderBytes = uint64_t{1} << 20;
-constexpr uint64_t kInFile = UINT64_MAX;  // a place outside of every chunk
 
 // What a record is; 4 and 6 are indexes.
 enum Operation : uint8_t {
@@ -60,40 +57,16 @@ class Header {
   std::vector<std::pair<std::string_view, std::string_view>> values_;
 };
 
-class Rosbag1 : public MessageLog {
+class Rosbag1 final : public ChunkedLog {
  public:
   explicit Rosbag1(const std::string& path)
-      : file_(std::make_shared<const RandomAccessFile>(path)), cache_(file_) {}
-
-  const std::string& path() const override { return file_->path(); }
-
-  void ForEach(const Visit& visit) override {
-    visit_ = &visit;
-    try {
-      ReadRecords();
-    } catch (const Damage& damage) {
-      Fail(damage);
-    }
-  }
-
-  std::string Read(const MessagePlace& place) const override {
-    try {
-      if (place.container == kInFile) return file_->Read(place.offset, place.size);
-      return cache_.Get(chunks_.at(place.container))->substr(place.offset, place.size);
-    } catch (const Damage& damage) {
-      Fail(damage);
-    }
-  }
+      : ChunkedLog(path, "cannot read bag",
+                   "copy it again, or save what is readable by 'rosbag reindex'") {}
 
  private:
-  [[noreturn]] void Fail(const Damage& damage) const {
-    throw InputError({"cannot read bag", path(), damage.why,
-                      "copy it again, or save what is readable by 'rosbag reindex'"});
-  }
-
-  void ReadRecords() {
+  void ReadRecords() override {
     uint64_t position = kMagicBytes;
-    while (position < file_->size()) {
+    while (position < file().size()) {
       std::optional<Record> record;
       try {
         record = RecordAt(position);
@@ -106,27 +79,27 @@ class Rosbag1 : public MessageLog {
       ReadRecord(*record);
       position = record->data_begin + record->data_bytes;
     }
-    if (is_closed_ && chunks_.size() != num_chunks_claimed_) {
-      throw Damage{"it has " + std::to_string(chunks_.size()) + " chunks, its header says " +
+    if (is_closed_ && chunks().size() != num_chunks_claimed_) {
+      throw Damage{"it has " + std::to_string(chunks().size()) + " chunks, its header says " +
                    std::to_string(num_chunks_claimed_)};
     }
   }
 
   Record RecordAt(uint64_t position) const {
-    const auto header_bytes = ByteFields(file_->Read(position, 4)).Take<uint32_t>();
+    const auto header_bytes = ByteFields(file().Read(position, 4)).Take<uint32_t>();
     if (header_bytes > kMaxHeaderBytes) {
       throw Damage{"a record's header of " + std::to_string(header_bytes) +
                    " bytes begins at byte " + std::to_string(position)};
     }
     Record record;
-    record.header = file_->Read(position + 4, header_bytes);
+    record.header = file().Read(position + 4, header_bytes);
     record.operation = Header(record.header).Number<uint8_t>("op");
     if (record.operation < kMessage || record.operation > kConnection) {
       throw Damage{"a record of an unknown kind begins at byte " + std::to_string(position)};
     }
-    record.data_bytes = ByteFields(file_->Read(position + 4 + header_bytes, 4)).Take<uint32_t>();
+    record.data_bytes = ByteFields(file().Read(position + 4 + header_bytes, 4)).Take<uint32_t>();
     record.data_begin = position + 8 + header_bytes;
-    if (record.data_bytes > file_->size() - record.data_begin) {
+    if (record.data_bytes > file().size() - record.data_begin) {
       throw Damage{"it ends inside of the record at byte " + std::to_string(position)};
     }
     return record;
@@ -134,12 +107,12 @@ class Rosbag1 : public MessageLog {
 
   void ReadRecord(const Record& record) {
     const Header header(record.header);
-    const auto data = [&] { return file_->Read(record.data_begin, record.data_bytes); };
+    const auto data = [&] { return file().Read(record.data_begin, record.data_bytes); };
     if (record.operation == kBagHeader) {
       const auto index_position = header.Number<uint64_t>("index_pos");
       is_closed_ = index_position != 0;
       num_chunks_claimed_ = header.Number<uint32_t>("chunk_count");
-      if (index_position > file_->size()) {
+      if (index_position > file().size()) {
         throw Damage{"it ends before its index, which begins at byte " +
                      std::to_string(index_position)};
       }
@@ -148,7 +121,7 @@ class Rosbag1 : public MessageLog {
     } else if (record.operation == kConnection) {
       AddConnection(header, data());
     } else if (record.operation == kMessage) {
-      VisitMessage(header, {kInFile, record.data_begin, record.data_bytes}, data());
+      VisitMessage(header, InFile(record.data_begin, record.data_bytes), data());
     }
     // Indexes say nothing that the messages themselves do not.
   }
@@ -159,13 +132,11 @@ class Rosbag1 : public MessageLog {
     if (!compression || *compression == Compression::kZstd) {
       throw Damage{"a chunk is packed by '" + name + "'"};
     }
-    const bool is_plain = *compression == Compression::kNone;
     const Chunk chunk{record.data_begin, record.data_bytes, header.Number<uint32_t>("size"),
                       *compression};
-    const auto number = chunks_.size();
-    chunks_.push_back(chunk);
+    const size_t number = Add(chunk);
     if (chunk.size == 0 && chunk.packed_size == 0) return;  // It was still being written.
-    const std::shared_ptr<const std::string> bytes = cache_.Get(chunk);
+    const std::shared_ptr<const std::string> bytes = Unpacked(number);
     ByteFields fields(*bytes);
     while (!fields.at_end()) {
       const Header inner(fields.TakeString());
@@ -173,12 +144,7 @@ class Rosbag1 : public MessageLog {
       const uint8_t operation = inner.Number<uint8_t>("op");
       if (operation == kConnection) AddConnection(inner, data);
       if (operation != kMessage) continue;
-      // A message of a chunk that is not packed is read again without the rest of the chunk.
-      const uint64_t offset = fields.position() - data.size();
-      VisitMessage(inner,
-                   is_plain ? MessagePlace{kInFile, chunk.offset + offset, data.size()}
-                            : MessagePlace{number, offset, data.size()},
-                   data);
+      VisitMessage(inner, InChunk(number, fields.position() - data.size(), data.size()), data);
     }
   }
 
@@ -194,14 +160,10 @@ class Rosbag1 : public MessageLog {
   void VisitMessage(const Header& header, const MessagePlace& place, std::string_view bytes) {
     const auto topic = topics_.find(header.Number<uint32_t>("conn"));
     if (topic == topics_.end()) throw Damage{"a message belongs to no connection"};
-    if (!topic->second.type.empty()) (*visit_)(topic->second, place, bytes);
+    Found(topic->second, place, bytes);
   }
 
-  std::shared_ptr<const RandomAccessFile> file_;
-  ChunkCache cache_;
-  std::vector<Chunk> chunks_;
   std::map<uint32_t, LogTopic> topics_;
-  const Visit* visit_ = nullptr;
   bool is_closed_ = false;
   uint64_t num_chunks_claimed_ = 0;
 };

@@ -20,7 +20,7 @@
 #include "calibrato/recording/comma_separated.h"
 #include "calibrato/recording/encoded_image.h"
 #include "calibrato/recording/file_kind.h"
-#include "calibrato/recording/text_lines.h"
+#include "calibrato/recording/stamped_rows.h"
 
 namespace calibrato {
 namespace {
@@ -112,32 +112,20 @@ class VideoFrames : public ImageReader {
 };
 
 std::vector<Time> ListedStamps(const std::string& path) {
-  TextLines lines(path);
   std::vector<Time> stamps;
-  std::vector<std::string_view> fields;
-  while (const std::optional<std::string_view> next = lines.Next()) {
-    const std::string_view line =
-        Trimmed(lines.line_number() == 1 ? WithoutByteOrderMark(*next) : *next);
-    if (line.empty() || line.starts_with('#')) continue;
-    SplitAtCommas(line, &fields);
-    const std::string_view field = fields.front();
-    int64_t stamp = -1;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), stamp);
-    const bool is_number = error == std::errc() && end == field.data() + field.size();
-    if (!is_number && stamps.empty() && lines.line_number() == 1) continue;  // names of columns
-    const std::string where = path + " line " + std::to_string(lines.line_number());
-    if (!is_number || stamp < 0) {
-      throw InputError({"malformed list of stamps", where,
-                        "expected whole nanoseconds, found " + Quoted(field),
+  ForEachStampedRow(path, [&](const StampedRow& row) {
+    if (row.stamp_ns < 0) {
+      throw InputError({"malformed list of stamps", row.where,
+                        "expected whole nanoseconds, found " + Quoted(row.fields.front()),
                         "correct the line or remove it"});
     }
-    const Time time = Time::FromNanoseconds(stamp);
+    const Time time = Time::FromNanoseconds(row.stamp_ns);
     if (!stamps.empty() && !(time > stamps.back())) {
-      throw InputError({"malformed list of stamps", where, "the stamp does not ascend",
+      throw InputError({"malformed list of stamps", row.where, "the stamp does not ascend",
                         "give one row for each frame, in their order"});
     }
     stamps.push_back(time);
-  }
+  });
   return stamps;
 }
 
