@@ -16,8 +16,8 @@ struct LoopDemand {
 };
 
 /// Each the largest over the loop, as a share of the carrier's limit: at most 1 where it fits. The
-/// maximum over 126 instants x_k is a smooth one, log(sum exp(50 x_k)) / 50: never below the largest
-/// of them and at most 0.11 above.
+/// maximum over 126 instants x_k is a smooth one, log(sum exp(50 x_k)) / 50: never below the
+/// largest of them and at most 0.11 above.
 struct LoopDemands {
   LoopDemand speed;
   LoopDemand acceleration;
