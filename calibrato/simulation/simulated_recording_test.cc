@@ -28,12 +28,14 @@ struct Simulated {
     frames = SimulateFrames(rig, motion, start, rng);
     Rng imu_rng(2);
     imu = SimulateImu(rig, motion, start, imu_rng);
-    files = SimulatedRecordingFiles(rig, motion, start,
-                                    {.path = PlannedPath(motion),
-                                     .frames = frames,
-                                     .imu = imu,
-                                     .tracking = std::nullopt,
-                                     .images = {}});
+    files = SimulatedRecordingFiles(rig, motion, start, Run());
+  }
+  [[nodiscard]] SimulatedRun Run() const {
+    return {.path = PlannedPath(motion),
+            .frames = frames,
+            .imu = imu,
+            .tracking = std::nullopt,
+            .images = {}};
   }
 };
 
@@ -65,8 +67,8 @@ TEST(SimulatedRecording, OpensLikeAnyOther) {
 TEST(SimulatedRecording, TellsTheRateOfTheCamera) {
   Simulated simulated;
   simulated.rig.camera_rate_hz = 20.0;
-  const std::map<std::string, std::string> files = SimulatedRecordingFiles(
-      simulated.rig, simulated.motion, simulated.start, simulated.frames, simulated.imu);
+  const std::map<std::string, std::string> files =
+      SimulatedRecordingFiles(simulated.rig, simulated.motion, simulated.start, simulated.Run());
   EXPECT_EQ(ParseYaml(files.at("sensor.yaml"), "").At("rate_hz").AsDouble(), 20.0);
   EXPECT_EQ(ParseYaml(files.at("rig.yaml"), "").At("rate_hz").AsDouble(), 20.0);
 }
