@@ -40,10 +40,18 @@ Action SetUpBoard(CLI::App& app, const GlobalOptions& global);
 Action SetUpSimulate(CLI::App& app, const GlobalOptions& global);
 Action SetUpLearn(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateTable1(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateTable6(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateFigure4(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateFigure5(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateFigure7(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluatePareto(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateRivals(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateAll(CLI::App& app, const GlobalOptions& global);
 Action SetUpCheck(CLI::App& app, const GlobalOptions& global);
 Action SetUpConvert(CLI::App& app, const GlobalOptions& global);
 Action SetUpNoise(CLI::App& app, const GlobalOptions& global);
 Action SetUpDiff(CLI::App& app, const GlobalOptions& global);
+Action SetUpPlan(CLI::App& app, const GlobalOptions& global);
 Action SetUpReport(CLI::App& app, const GlobalOptions& global);
 
 /// Set once SIGINT or SIGTERM came; only commands that save their state look at it. See main.cc.

@@ -330,12 +330,13 @@ TEST(FullDisk, LeavesNothingOfASimulation) {
 
 TEST(FullDisk, LeavesNothingOfAnEvaluation) {
   const ScratchFolder scratch;
-  ExpectRefusedByAFullDisk(scratch, {"evaluate", "table1", "--num-rigs", "2"});
+  ExpectRefusedByAFullDisk(scratch,
+                           {"evaluate", "table1", "--task", "intrinsic", "--num-rigs", "2"});
 }
 
 TEST(FullDisk, LeavesNothingOfLearning) {
   const ScratchFolder scratch;
-  ExpectRefusedByAFullDisk(scratch, {"learn", "intrinsic", "--episodes", "2"});
+  ExpectRefusedByAFullDisk(scratch, {"learn", "intrinsic", "--preset", "paper", "--episodes", "2"});
 }
 
 TEST(FullDisk, LeavesAnEarlierResultAsItWas) {
@@ -542,14 +543,34 @@ TEST(CalibrateCameraImu, RefusesARecordingWithoutAnImu) {
 
 TEST(Learn, ResumesNothingWithoutACheckpoint) {
   const ScratchFolder scratch;
-  ExpectRefused(scratch, {"learn", "intrinsic", "--episodes", "8", "--resume"},
+  ExpectRefused(scratch, {"learn", "intrinsic", "--preset", "paper", "--episodes", "8", "--resume"},
                 {"nothing to resume", "checkpoint.bin", "--resume"});
 }
 
 TEST(Learn, NamesATaskThatIsNotThere) {
   const ScratchFolder scratch;
-  ExpectRefused(scratch, {"learn", "extrinsic"}, {"extrinsic", "learn intrinsic"});
-  ExpectRefused(scratch, {"learn", "knitting"}, {"knitting"});
+  ExpectRefused(scratch, {"learn", "knitting"},
+                {"knitting", "there are intrinsic, extrinsic and joint"});
+}
+
+TEST(Learn, NamesWhatItsOptionsMayBe) {
+  const ScratchFolder scratch;
+  const auto refuse = [&](const std::string& option, const std::string& value,
+                          const std::vector<std::string>& words) {
+    ExpectRefused(scratch,
+                  {"learn", "intrinsic", "--preset", "paper", "--episodes", "2", option, value},
+                  words);
+  };
+  refuse("--planner", "icen", {"unknown planner 'icen'", "icem", "q-library", "sac"});
+  refuse("--mistakes", "frozen-swarm,lost-coverag", {"'lost-coverag'", "lost-coverage"});
+  refuse("--reward", "applause", {"unknown reward", "reprojection"});
+  refuse("--criterion", "f", {"unknown criterion", "a, d and e"});
+  refuse("--fidelity", "physical", {"physical", "--carrier arm"});
+  ExpectRefused(scratch, {"learn", "intrinsic", "--preset", "cheap"}, {"unknown preset 'cheap'"});
+  ExpectRefused(
+      scratch,
+      {"learn", "joint", "--preset", "paper", "--episodes", "2", "--mistakes", "wrong-truth"},
+      {"wrong-truth", "no joint task"});
 }
 
 TEST(Learn, NamesRigsThatAreNotThere) {
@@ -586,12 +607,15 @@ TEST(CommandLine, HelpOfEveryCommandNamesItsOptions) {
       {{"simulate"},
        {"--rig", "--motion", "--carrier", "--fidelity", "--scale-to-fit", "--video", "--out"}},
       {{"learn"},
-       {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--episodes", "--resume",
-        "--out"}},
-      {{"evaluate"}, {"table1"}},
+       {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--reward", "--criterion",
+        "--information-weight", "--mistakes", "--planner", "--evaluations", "--round", "--episodes",
+        "--live", "--resume", "--out"}},
+      {{"evaluate"},
+       {"table1", "table6", "figure4", "figure5", "figure7", "pareto", "rivals", "all"}},
       {{"evaluate", "table1"},
-       {"--task", "--policy", "--motion", "--carrier", "--fidelity", "--rigs", "--num-rigs",
-        "--quick", "--out"}},
+       {"--task", "--policy", "--motion", "--trajectory", "--carrier", "--fidelity", "--rigs",
+        "--rig-file", "--num-rigs", "--quick", "--out"}},
+      {{"evaluate", "rivals"}, {"--outside", "--policy", "--out"}},
       {{"report"}, {"folder"}}};
   for (const auto& [command, names] : commands) {
     SCOPED_TRACE(InWords(command));
@@ -626,8 +650,15 @@ TEST(CommandLine, JsonIsAllThatIsOnStdout) {
   const auto out = [&](const std::string& name) { return input.scratch.Path(name); };
   ExpectJson(With(input.Simulate(), {"--out", out("recording")}), "simulation");
   ExpectJson({"calibrate", "camera", out("recording"), "--out", out("camera")}, "camera");
-  ExpectJson({"evaluate", "table1", "--num-rigs", "2", "--out", out("table")}, "table1");
-  ExpectJson({"learn", "intrinsic", "--episodes", "2", "--out", out("learned")}, "learn");
+  ExpectJson(
+      {"evaluate", "table1", "--task", "intrinsic", "--num-rigs", "2", "--out", out("table")},
+      "table1");
+  ExpectJson(
+      {"learn", "intrinsic", "--preset", "paper", "--episodes", "2", "--out", out("learned")},
+      "learn");
+  ExpectJson({"learn", "joint", "--preset", "paper", "--episodes", "2", "--round", "2", "--out",
+              out("joint")},
+             "learn");
   ExpectJson({"report", out("table")}, "report");
 }
 

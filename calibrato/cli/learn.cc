@@ -1,105 +1,104 @@
+#include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <string>
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/cli/command.h"
+#include "calibrato/cli/learn_best.h"
+#include "calibrato/cli/learn_document.h"
+#include "calibrato/cli/learn_environment.h"
+#include "calibrato/cli/live_page.h"
 #include "calibrato/cli/output.h"
-#include "calibrato/cli/parse.h"
 #include "calibrato/learning/trainer.h"
-#include "calibrato/mdp/intrinsic_environment.h"
+#include "calibrato/report/report.h"
 
 namespace calibrato {
 namespace {
 
 struct Options {
-  std::string task;
-  std::string preset = "paper";
-  std::string carrier = "free";
-  std::string fidelity = "fast";
-  std::string rigs = "paper";
-  int episodes = 1000;
+  LearnSetting setting;
+  std::string preset = "best";
+  DesignArguments design;
+  std::string planner = kPaperPlanner;
+  int evaluations = 0;  // 0: those of the paper's swarm.
+  int round = 1;
+  int episodes = 0;  // 0: the paper's.
+  int live_port = -1;
   bool resume = false;
   std::string out;
 };
 
-IntrinsicTask MakeTask(const Options& options) {
-  IntrinsicTask task;
-  task.carrier = CarrierFromName(options.carrier);
-  if (std::filesystem::is_regular_file(options.rigs)) {
-    task.fixed_rig = ReadRig(options.rigs);
-  } else {
-    task.rigs = RigDistributionFromName(options.rigs);
+LearnOptions MakeLearnOptions(const Options& options, const GlobalOptions& global) {
+  LearnOptions learn;
+  learn.task = TaskFromName(options.setting.task);
+  learn.carrier = CarrierFromName(options.setting.carrier);
+  learn.seed = global.seed;
+  learn.num_episodes = options.episodes > 0 ? options.episodes : PaperNumEpisodes(learn.task);
+  learn.stages = PaperStages(learn.task, learn.num_episodes);
+  learn.round = options.round;
+  learn.resume = options.resume;
+  learn.mistakes = MistakesFromNames(options.setting.mistakes);
+  learn.networks.mask_histories = learn.mistakes.contains(Mistake::kMaskedHistories);
+  learn.planning.planner = options.planner;
+  SwarmOptions& swarm = learn.planning.swarm;
+  swarm.frozen = learn.mistakes.contains(Mistake::kFrozenSwarm);
+  if (options.evaluations > 0) {
+    swarm.num_iterations = options.evaluations / swarm.num_particles - 1;
   }
-  return task;
+  return learn;
 }
 
-// The rigs by name, or the content of a rig's file by a digest of it.
-std::string EnvironmentName(const Options& options, const IntrinsicTask& task) {
-  if (!task.fixed_rig) return "rigs " + options.rigs;
-  const uint64_t digest = Rng(0).Stream(ToYaml(ToValue(*task.fixed_rig))).NextBits();
-  return "rig file of digest " + std::to_string(digest);
-}
-
-Value Result(const Options& options, const LearnResult& learned) {
+Value Result(const Options& options, const LearnOptions& learn, const LearnResult& learned) {
   Value result = Value::Object();
   result.Set("kind", "learn")
-      .Set("task", options.task)
+      .Set("task", options.setting.task)
       .Set("preset", learned.preset)
-      .Set("carrier", options.carrier)
-      .Set("rigs", options.rigs)
+      .Set("planner", learn.planning.planner)
+      .Set("evaluations_a_plan", NumEvaluations(learn.planning))
+      .Set("carrier", options.setting.carrier)
+      .Set("fidelity", options.setting.fidelity)
+      .Set("rigs", options.setting.rigs)
+      .Set("reward", options.setting.reward)
+      .Set("mistakes", NamesOf(learn.mistakes))
+      .Set("round", learn.round)
       .Set("termination", LearnTerminationName(learned.termination))
       .Set("termination_text", learned.termination_text)
       .Set("episodes", learned.num_episodes)
       .Set("calibrations", learned.num_calibrations)
       .Set("information_evaluations", learned.num_information_evaluations)
+      .Set("rollbacks", learned.num_rollbacks)
       .Set("best_return", learned.best_return)
       .Set("path_length_m", PathLength(learned.motion));
   return result;
 }
 
-// training.jsonl as one array.
-Value TrainingLines(const std::string& folder) {
-  const std::string path = folder + "/training.jsonl";
-  std::istringstream lines(ReadFile(path));
-  Value array = Value::Array();
-  for (std::string line; std::getline(lines, line);) array.Append(ParseJson(line, path));
-  return array;
+// What is shown while it learns: the report of all episodes so far.
+LivePage::Content LiveContent(const Options& options) {
+  const auto page = [options] {
+    Value document = Value::Object();
+    document.Set("kind", "learn")
+        .Set("task", options.setting.task)
+        .Set("preset", options.preset)
+        .Set("planner", options.planner)
+        .Set("training", TrainingLines(options.out));
+    return ReportHtml("Learning, so far", {document});
+  };
+  const auto data = [options] { return ReadFile(options.out + "/training.jsonl"); };
+  return {page, data};
 }
 
-ExitCode RunLearn(const Options& options, const GlobalOptions& global) {
-  Stopwatch stopwatch;
-  if (TaskFromName(options.task) != Task::kIntrinsic || options.preset != "paper" ||
-      options.fidelity != "fast") {
-    throw InputError({"not in this version: learn " + options.task + " --preset " + options.preset +
-                          " --fidelity " + options.fidelity,
-                      "", "", "use calibrato learn intrinsic --preset paper --fidelity fast"});
-  }
-  OutputFolder out(options.out);
-  LearnOptions learn;
-  learn.task = Task::kIntrinsic;
-  learn.carrier = CarrierFromName(options.carrier);
-  learn.seed = global.seed;
-  learn.num_episodes = options.episodes;
-  learn.resume = options.resume;
-  const IntrinsicTask task = MakeTask(options);
-  learn.environment = EnvironmentName(options, task);
-  IntrinsicEnvironment environment(task);
-
-  NoteInterruptions();
-  stopwatch.Start("training_s");
-  const LearnResult learned = Learn(learn, environment, options.out, &InterruptRequested());
-  if (learned.termination == LearnTermination::kInterrupted) {
-    std::fprintf(stderr, "%s\n", learned.termination_text.c_str());
-    return kInterrupted;
-  }
-  const Value result = Result(options, learned);
+// Commits what was learned and tells of it.
+ExitCode Tell(const LearnResult& learned, const Value& result, const Rig& scene,
+              const Options& options, const GlobalOptions& global, Stopwatch* stopwatch,
+              OutputFolder* out) {
   Value plots = Value::Object();
   plots.Set("training", TrainingLines(options.out));
-  CommitResult("Learning", result, plots, &stopwatch, &out);
+  const Value drawing = MotionDrawing(learned.motion, scene);
+  if (!drawing.IsNull()) plots.Set("motion", drawing);
+  CommitResult("Learning", result, plots, stopwatch, out);
   if (global.json) {
     std::fputs(ToJson(result).c_str(), stdout);
   } else if (!global.quiet) {
@@ -114,19 +113,108 @@ ExitCode RunLearn(const Options& options, const GlobalOptions& global) {
   return kNotTrusted;
 }
 
+ExitCode RunLearnBest(const Options& options, const GlobalOptions& global) {
+  Stopwatch stopwatch;
+  OutputFolder out(options.out);
+  LearnBestArguments arguments;
+  arguments.setting = options.setting;
+  arguments.design = options.design;
+  arguments.num_episodes = options.episodes;
+  arguments.seed = global.seed;
+  arguments.resume = options.resume;
+  arguments.out = options.out;
+  const Rig scene = MakeEnvironment(options.setting).scene;
+  stopwatch.Start("training_s");
+  const LearnResult learned = LearnBest(arguments);
+  if (learned.termination == LearnTermination::kInterrupted) {
+    std::fprintf(stderr, "%s\n", learned.termination_text.c_str());
+    return kInterrupted;
+  }
+  Value result = Value::Object();
+  result.Set("kind", "learn")
+      .Set("task", options.setting.task)
+      .Set("preset", learned.preset)
+      .Set("carrier", options.setting.carrier)
+      .Set("fidelity", options.setting.fidelity)
+      .Set("rigs", options.setting.rigs)
+      .Set("termination", LearnTerminationName(learned.termination))
+      .Set("termination_text", learned.termination_text)
+      .Set("episodes", learned.num_episodes)
+      .Set("calibrations", learned.num_calibrations)
+      .Set("information_evaluations", learned.num_information_evaluations)
+      .Set("best_return", learned.best_return)
+      .Set("path_length_m", PathLength(learned.motion));
+  return Tell(learned, result, scene, options, global, &stopwatch, &out);
+}
+
+ExitCode RunLearn(const Options& options, const GlobalOptions& global) {
+  Stopwatch stopwatch;
+  if (options.preset == "best") return RunLearnBest(options, global);
+  if (options.preset != "paper") {
+    throw InputError({"unknown preset '" + options.preset + "'", "", "there are best and paper",
+                      "use --preset best"});
+  }
+  OutputFolder out(options.out);
+  LearnOptions learn = MakeLearnOptions(options, global);
+  CheckOptions(learn);
+  const LearnEnvironment made = MakeEnvironment(options.setting);
+  learn.environment = made.name;
+  std::optional<LivePage> live;
+  if (options.live_port >= 0) {
+    live.emplace(options.live_port, LiveContent(options));
+    if (!global.quiet) std::fprintf(stderr, "live: %s\n", live->address().c_str());
+  }
+
+  NoteInterruptions();
+  stopwatch.Start("training_s");
+  const LearnResult learned = Learn(learn, *made.environment, options.out, &InterruptRequested());
+  if (learned.termination == LearnTermination::kInterrupted) {
+    std::fprintf(stderr, "%s\n", learned.termination_text.c_str());
+    return kInterrupted;
+  }
+  const Value result = Result(options, learn, learned);
+  return Tell(learned, result, made.scene, options, global, &stopwatch, &out);
+}
+
 }  // namespace
 
 Action SetUpLearn(CLI::App& app, const GlobalOptions& global) {
   auto options = std::make_shared<Options>();
-  app.add_option("task", options->task, "intrinsic")->required();
-  app.add_option("--preset", options->preset, "paper")->capture_default_str();
-  app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
-  app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
-  app.add_option("--rigs", options->rigs, "paper, paper-undistorted, or a RIG.yaml")
+  LearnSetting& setting = options->setting;
+  app.add_option("task", setting.task, "intrinsic, extrinsic or joint")->required();
+  app.add_option("--preset", options->preset, "best or paper")->capture_default_str();
+  app.add_option("--carrier", setting.carrier, "free or arm")->capture_default_str();
+  app.add_option("--fidelity", setting.fidelity, "fast, physical or rendered")
       ->capture_default_str();
-  app.add_option("--episodes", options->episodes, "Episodes of four loops each")
-      ->check(CLI::Range(2, 1000000))
+  app.add_option("--rigs", setting.rigs, "A distribution (paper, paper-undistorted), or a RIG.yaml")
       ->capture_default_str();
+  app.add_option("--reward", setting.reward, "error, or reprojection where the truth is not known")
+      ->capture_default_str();
+  app.add_option("--criterion", setting.criterion, "Of the information: a, d or e")
+      ->capture_default_str();
+  app.add_option("--information-weight", setting.information_weight,
+                 "Of the information in the reward, per nat (intrinsic 0, else 1)")
+      ->check(CLI::Range(0.0, 1e9));
+  app.add_option("--mistakes", setting.mistakes,
+                 "Of the original implementation, to measure what they cost: names with commas "
+                 "between, or all (docs/differences.md)");
+  app.add_option("--planner", options->planner,
+                 "pso-paper, random-shooting, pso, pso-p, cem, icem, cma-es, q-library, sac")
+      ->capture_default_str();
+  app.add_option("--evaluations", options->evaluations,
+                 "Sequences that a plan may evaluate, in fifteens (90)")
+      ->check(CLI::Range(15, 1500000));
+  app.add_option("--round", options->round, "Episodes played side by side")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  app.add_option("--episodes", options->episodes,
+                 "Of all stages (best: 96; paper: 1000, extrinsic 1650, 1000 of them without "
+                 "calibrations)")
+      ->check(CLI::Range(2, 1000000));
+  app.add_option("--live", options->live_port,
+                 "Port of a page on this machine that shows the training; 0 for any")
+      ->check(CLI::Range(0, 65535));
+  AddDesignArguments(app, &options->design);
   app.add_flag("--resume", options->resume, "Go on from the checkpoint in --out");
   app.add_option("--out", options->out, "Folder for the policy and the result")->required();
   return [options, &global] { return RunLearn(*options, global); };

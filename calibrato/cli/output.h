@@ -14,6 +14,8 @@ class Stopwatch {
  public:
   /// Ends the running part, if any, and starts this one: "detection_s".
   void Start(const std::string& part);
+  /// Seconds that a part took by another clock: of one estimator, say, over many trials.
+  void Add(const std::string& part, double seconds) { seconds_[part] += seconds; }
   /// {"detection_s": .., "total_s": .., "peak_memory_bytes": ..}
   [[nodiscard]] Value Timing();
 

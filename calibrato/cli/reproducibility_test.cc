@@ -57,9 +57,10 @@ Files FilesOfRun(Arguments arguments, const std::string& out) {
   return ResultFiles(out);
 }
 
-// Beyond one checkpoint, which is written every fifth episode; tests of the policy add lines to the
-// log, so that episode 5 ends with line 7.
-Arguments LearnArguments() { return {"learn", "intrinsic", "--episodes", "8", "--seed", "3"}; }
+// Checkpoints come after every episode; tests of the policy add lines to the log.
+Arguments LearnArguments() {
+  return {"learn", "intrinsic", "--preset", "paper", "--episodes", "8", "--seed", "3"};
+}
 
 Arguments WithThreads(Arguments arguments, int threads) {
   arguments.insert(arguments.end(), {"--threads", std::to_string(threads)});
@@ -111,10 +112,39 @@ TEST(Learn, WritesTheSameBytesAgainAndForAnyNumberOfThreads) {
   }
 }
 
+// Two stages, the second with calibrations, in rounds; killed in each, the program goes on.
+TEST(Learn, OfTheExtrinsicTaskWritesTheSameBytesForAnyNumberOfThreadsAndWhenKilled) {
+  const ScratchFolder scratch;
+  const Arguments learn = {"learn", "extrinsic", "--preset", "paper",  "--episodes",
+                           "5",     "--round",   "2",        "--seed", "3"};
+  const Files two_threads = FilesOfRun(WithThreads(learn, 2), scratch.Path("two"));
+  for (const char* name : {"policy/motion.yaml", "policy-learned/motion.yaml"}) {
+    EXPECT_TRUE(two_threads.count(name)) << name;
+  }
+  ExpectSameFiles(two_threads, FilesOfRun(WithThreads(learn, 1), scratch.Path("one")));
+  const std::string out = scratch.Path("killed");
+  const auto learn_or_resume = [&] {
+    Arguments arguments = WithThreads(learn, 2);
+    arguments.insert(arguments.end(), {"--out", out});
+    if (std::filesystem::exists(out + "/checkpoint.bin")) arguments.emplace_back("--resume");
+    return arguments;
+  };
+  for (const std::ptrdiff_t lines : {2, 5}) {
+    RunningProgram program(learn_or_resume());
+    WaitForLines(program, out, lines);
+    program.Signal(SIGKILL);
+    (void)program.Wait();
+  }
+  EXPECT_EQ(RunProgram(learn_or_resume()).exit_code, 0);
+  ExpectSameFiles(two_threads, ResultFiles(out));
+}
+
 TEST(Learn, WritesOtherBytesForAnotherSeed) {
   const ScratchFolder scratch;
-  const Arguments seed_1 = {"learn", "intrinsic", "--episodes", "2", "--seed", "1"};
-  const Arguments seed_2 = {"learn", "intrinsic", "--episodes", "2", "--seed", "2"};
+  const Arguments seed_1 = {"learn",      "intrinsic", "--preset", "paper",
+                            "--episodes", "2",         "--seed",   "1"};
+  const Arguments seed_2 = {"learn",      "intrinsic", "--preset", "paper",
+                            "--episodes", "2",         "--seed",   "2"};
   EXPECT_NE(FilesOfRun(seed_1, scratch.Path("1")).at("training.jsonl"),
             FilesOfRun(seed_2, scratch.Path("2")).at("training.jsonl"));
 }
@@ -165,11 +195,11 @@ TEST(Learn, InterruptedSavesItsStateAndResumedWritesTheBytesOfARunThatNeverStopp
 
 TEST(Evaluate, WritesTheSameBytesAgainAndForAnyNumberOfThreads) {
   const ScratchFolder scratch;
-  const Arguments evaluate = {"evaluate", "table1", "--num-rigs", "4", "--seed", "3"};
+  const Arguments evaluate = {"evaluate", "table1", "--num-rigs", "2", "--seed", "3"};
   const Files one_thread = FilesOfRun(WithThreads(evaluate, 1), scratch.Path("one"));
   EXPECT_TRUE(one_thread.count("table1.json"));
+  EXPECT_TRUE(one_thread.count("trials.csv"));
   ExpectSameFiles(one_thread, FilesOfRun(WithThreads(evaluate, 2), scratch.Path("two")));
-  ExpectSameFiles(one_thread, FilesOfRun(WithThreads(evaluate, 2), scratch.Path("again")));
 }
 
 TEST(Simulate, WritesTheSameBytesAgainAndCalibratesToTheSameBytes) {

@@ -1,167 +1,154 @@
 #include "calibrato/evaluation/table1.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
-#include "calibrato/base/parallel.h"
-#include "calibrato/base/progress.h"
-#include "calibrato/calibration/camera_calibration.h"
-#include "calibrato/calibration/prediction_error.h"
-#include "calibrato/mdp/intrinsic_environment.h"
-#include "calibrato/motion/paper_scene.h"
-#include "calibrato/simulation/fast_simulation.h"
+#include "calibrato/mdp/frames_that_count.h"
+#include "calibrato/motion/expert_motion.h"
 
 namespace calibrato {
 namespace {
 
-// Keeps the rigs of trials apart from those of training under the same seed.
-constexpr const char* kRigPurpose = "evaluation rig";
-constexpr const char* kNoisePurpose = "evaluation noise";
-constexpr const char* kMotionPurpose = "evaluation motion";
+constexpr const char* kHandcrafted = "handcrafted";
 
-TimedMotion PlanOrScale(Motion motion, Carrier carrier, const Rig& rig) {
-  motion.carrier = carrier;
-  auto planned = PlanMotion(motion, rig);
-  if (auto* timed = std::get_if<TimedMotion>(&planned)) return std::move(*timed);
-  return PlanScaledToFit(motion, rig);
+std::string AtPathOf(const std::string& policy, const std::string& rival) {
+  return policy + " at " + rival + "'s path";
 }
 
-std::vector<BoardView> CountedViews(const Rig& rig, const TimedMotion& motion, Rng noise) {
-  return FramesThatCount(SimulateFrames(rig, motion, Time(), noise).views,
-                         rig.cameras.front().resolution);
-}
+// Room for rounding when paths that were made equal are compared.
+bool IsLonger(double path, double other) { return path > other * (1.0 + 1e-9); }
 
-struct NamedTimedMotion {
-  std::string policy;
-  TimedMotion timed;
-};
+std::vector<Contestant> Contestants(const Table1Options& options, const std::vector<Rig>& rigs,
+                                    const Rig& scene) {
+  const ContestSetting& setting = options.setting;
+  const Carrier carrier = setting.carrier;
+  const auto in_scene = [&](size_t) -> const Rig& { return scene; };
+  const auto on_rig = [&](size_t i) -> const Rig& { return rigs[i]; };
 
-Trial RunTrial(const Rig& rig, const TimedMotion& motion, const Rng& noise) {
-  const Camera& camera = rig.cameras.front();
-  Trial trial;
-  trial.path_length_m = PathLength(motion.motion);
-  trial.path_length_original_m = PathLengthOriginal(motion.motion);
-  trial.motion_s = motion.duration_s();
-
-  CameraProblem problem;
-  problem.model = kIntrinsicTaskModel;
-  problem.resolution = camera.resolution;
-  problem.views = CountedViews(rig, motion, noise);
-  const CameraCalibration calibration = CalibrateCamera(problem);
-  trial.converged = calibration.termination == Termination::kConverged;
-  if (!trial.converged) return trial;
-  const Eigen::Vector4d truth = camera.model.focal_and_centre();
-  const Eigen::Vector4d error = calibration.model->focal_and_centre() - truth;
-  const Eigen::Matrix4d covariance = calibration.covariance.topLeftCorner<4, 4>();
-  trial.relative_error = RelativeIntrinsicError(calibration.model->focal_and_centre(), truth);
-  trial.focal_error_px = error.head<2>().norm() / std::sqrt(2.0);
-  trial.prediction_error_px =
-      PredictionErrorPx(*calibration.model, camera.model, camera.resolution);
-  trial.a_optimality = calibration.information.a_optimality;
-  trial.nees = error.dot(covariance.ldlt().solve(error));
-  return trial;
-}
-
-// The errors of the rigs that both rows calibrated, in pairs.
-void SetRatio(const Table1Row& row, const Table1Row& reference, const Rng& rng, double* ratio,
-              Interval* interval) {
-  std::vector<double> numerator;
-  std::vector<double> denominator;
-  for (size_t i = 0; i < row.trials.size(); ++i) {
-    if (!row.trials[i].converged || !reference.trials[i].converged) continue;
-    numerator.push_back(row.trials[i].relative_error);
-    denominator.push_back(reference.trials[i].relative_error);
+  std::vector<Contestant> contestants;
+  contestants.push_back(RandomContestant(setting.task, carrier, rigs, Rng(setting.seed)));
+  contestants.push_back(
+      FixedContestant(kHandcrafted, HandcraftedMotion(setting.task), carrier, scene));
+  const double random_path = contestants[0].mean_path_length_m();
+  const double handcrafted_path = contestants[1].mean_path_length_m();
+  for (const Contestant& brought :
+       BroughtContestants(options.motions, setting.task, carrier, scene)) {
+    contestants.push_back(brought);
+    const bool is_looped = std::all_of(brought.motions.begin(), brought.motions.end(),
+                                       [](const PlannedMotion& m) { return m.timed.has_value(); });
+    if (!is_looped || !IsLonger(brought.mean_path_length_m(), random_path)) continue;
+    contestants.push_back(
+        AtPathLength(brought, AtPathOf(brought.policy, "random"), random_path, carrier, in_scene));
   }
-  *ratio = Mean(numerator) / Mean(denominator);
-  *interval = BootstrapRatio(numerator, denominator, rng);
+  contestants.push_back(AtPathLength(contestants[0], AtPathOf("random", kHandcrafted),
+                                     handcrafted_path, carrier, on_rig));
+  const Contestant expert = FixedContestant("expert", ExpertMotion(), carrier, scene);
+  contestants.push_back(expert);
+  contestants.push_back(
+      AtPathLength(expert, AtPathOf("expert", kHandcrafted), handcrafted_path, carrier, in_scene));
+  return contestants;
 }
 
-void Summarise(Table1Row* row, const Rng& rng) {
-  std::vector<double> errors;
-  for (const Trial& trial : row->trials) {
-    if (trial.converged) {
-      errors.push_back(trial.relative_error);
-    } else {
-      ++row->num_failures;
-    }
-  }
-  row->mean_error = Mean(errors);
+std::vector<BoardView> ViewsOf(Task task, const PlannedMotion& motion, const Rig& scene,
+                               const Rng& noise) {
+  std::vector<BoardView> views =
+      RecordForTrial(Task::kIntrinsic, scene, motion, Fidelity::kFast, noise).views;
+  if (task == Task::kExtrinsic) return views;
+  return FramesThatCount(std::move(views), scene.cameras.front().resolution, scene.board);
+}
+
+void Summarise(Task task, Table1Row* row, const Rng& rng) {
+  const Figures errors = FiguresOf(row->trials, &Trial::relative_error);
+  row->num_failures = NumFailures(row->trials);
+  row->mean_error = Mean(Existing(errors));
   row->mean_error_ci95 = BootstrapMean(errors, rng);
-  row->median_error = Median(errors);
+  row->median_error = Median(Existing(errors));
+  row->consistency =
+      TestConsistency(Existing(FiguresOf(row->trials, &Trial::nees)), NeesDimension(task));
+}
+
+// Of every row to this one.
+void Compare(std::vector<Table1Row>* rows, const std::string& rival, const std::string& purpose,
+             Comparison Table1Row::*comparison, const Rng& rng) {
+  const auto named = std::find_if(rows->begin(), rows->end(),
+                                  [&](const Table1Row& row) { return row.policy == rival; });
+  const Figures reference = FiguresOf(named->trials, &Trial::relative_error);
+  std::vector<double> probabilities;
+  for (size_t k = 0; k < rows->size(); ++k) {
+    Table1Row& row = (*rows)[k];
+    const bool is_itself = &row == &*named;
+    const Figures own = FiguresOf(row.trials, &Trial::relative_error);
+    const Figures& errors = is_itself ? reference : own;
+    const Rng draws = rng.Stream("bootstrap ratio to " + purpose, k);
+    Comparison& made = row.*comparison;
+    made.ratio = PairedRatio(errors, reference);
+    made.ci95 = BootstrapRatio(errors, reference, draws);
+    made.probability =
+        is_itself ? std::numeric_limits<double>::quiet_NaN()
+                  : PairedPermutationProbability(errors, reference, draws.Stream("permutation"));
+    probabilities.push_back(made.probability);
+  }
+  const std::vector<double> adjusted = HolmAdjusted(probabilities);
+  for (size_t k = 0; k < rows->size(); ++k) {
+    ((*rows)[k].*comparison).adjusted_probability = adjusted[k];
+  }
+}
+
+std::string BestSimpleRival(const std::vector<Table1Row>& rows,
+                            const std::vector<Contestant>& contestants) {
+  const double longest = contestants[1].mean_path_length_m();
+  size_t best = 1;
+  for (size_t k = 0; k < rows.size(); ++k) {
+    const std::string& policy = rows[k].policy;
+    const bool is_simple = policy == "random" || policy == AtPathOf("random", kHandcrafted) ||
+                           policy == "expert" || policy == AtPathOf("expert", kHandcrafted) ||
+                           policy == "best-of-1000";
+    if (!is_simple || IsLonger(contestants[k].mean_path_length_m(), longest)) continue;
+    if (rows[k].mean_error < rows[best].mean_error) best = k;
+  }
+  return rows[best].policy;
 }
 
 }  // namespace
 
+int Table1Row::num_trials() const {
+  return trials.empty() ? 0 : static_cast<int>(trials.size() * trials.front().size());
+}
+
+double Table1Row::MeanOf(double Trial::*figure) const {
+  return Mean(Existing(FiguresOf(trials, figure)));
+}
+
+double Table1Row::MedianOf(double Trial::*figure) const {
+  return Median(Existing(FiguresOf(trials, figure)));
+}
+
 Table1 EvaluateTable1(const Table1Options& options) {
-  const Rng rng(options.seed);
-  const auto num_rigs = static_cast<size_t>(options.num_rigs);
-  const Rig scene = PaperRig();
+  const ContestSetting& setting = options.setting;
+  const Rng rng = Rng(setting.seed).Stream(TaskName(setting.task));
+  const std::vector<Rig> rigs = RigsUnderTrial(setting);
+  const Rig scene = PlanningScene(setting);
+  const std::vector<Contestant> contestants = Contestants(options, rigs, scene);
+  ContestTrials trials = RunContest(setting, rigs, contestants);
 
-  struct RigUnderTrial {
-    Rig rig;
-    TimedMotion random;
-  };
-  const auto rigs = ParallelMap<RigUnderTrial>(num_rigs, [&](size_t i) {
-    Rng draw_rig = rng.Stream(kRigPurpose, i);
-    Rng draw_motion = rng.Stream(kMotionPurpose, i);
-    RigUnderTrial trial{DrawRig(options.rigs, draw_rig), {}};
-    trial.random =
-        PlanOrScale(RandomMotion(Task::kIntrinsic, draw_motion), options.carrier, trial.rig);
-    return trial;
-  });
-  std::vector<double> random_paths;
-  for (const RigUnderTrial& trial : rigs) random_paths.push_back(PathLength(trial.random.motion));
-  const double random_path = Mean(random_paths);
-
-  // What is the same for all rigs is planned once, in the nominal scene: planning sees the rig only
-  // through the board's place in view.
-  std::vector<NamedTimedMotion> fixed = {
-      {"handcrafted", PlanOrScale(HandcraftedMotion(Task::kIntrinsic), options.carrier, scene)}};
-  for (const NamedMotion& named : options.motions) {
-    fixed.push_back({named.policy, PlanOrScale(named.motion, options.carrier, scene)});
-    const double path = PathLength(fixed.back().timed.motion);
-    if (!(path > random_path)) continue;
-    Motion shorter = fixed.back().timed.motion;
-    for (Loop& loop : shorter.loops) loop.coefficients *= random_path / path;
-    fixed.push_back(
-        {named.policy + " at random's path", PlanOrScale(shorter, options.carrier, scene)});
-  }
-
-  Table1 table{options, std::vector<Table1Row>(1 + fixed.size())};
-  table.rows[0].policy = "random";
-  for (size_t k = 0; k < fixed.size(); ++k) table.rows[k + 1].policy = fixed[k].policy;
-
-  Progress progress("evaluating", options.num_rigs);
-  const auto outcomes = ParallelMap<std::vector<Trial>>(num_rigs, [&](size_t i) {
-    const Rng noise = rng.Stream(kNoisePurpose, i);
-    std::vector<Trial> trials = {RunTrial(rigs[i].rig, rigs[i].random, noise)};
-    for (const NamedTimedMotion& motion : fixed) {
-      trials.push_back(RunTrial(rigs[i].rig, motion.timed, noise));
-    }
-    progress.Advance();
-    return trials;
-  });
-
-  for (size_t k = 0; k < table.rows.size(); ++k) {
+  Table1 table{options, std::vector<Table1Row>(contestants.size()), ""};
+  for (size_t k = 0; k < contestants.size(); ++k) {
     Table1Row& row = table.rows[k];
-    for (size_t i = 0; i < num_rigs; ++i) {
-      row.trials.push_back(outcomes[i][k]);
-      if (k == 0) row.scale = std::min(row.scale, rigs[i].random.scale);
+    row.policy = contestants[k].policy;
+    row.trials = std::move(trials[k]);
+    for (const PlannedMotion& motion : contestants[k].motions) {
+      row.scale = std::min(row.scale, motion.scale);
     }
-    row.example = k == 0 ? rigs[0].random : fixed[k - 1].timed;
-    if (k > 0) row.scale = row.example.scale;
-    row.example_views = CountedViews(scene, row.example, rng.Stream(kNoisePurpose, 0));
-    Summarise(&row, rng.Stream("bootstrap", k));
+    row.example = contestants[k].motions.front();
+    row.example_views = ViewsOf(setting.task, row.example, scene, rng.Stream("example"));
+    Summarise(setting.task, &row, rng.Stream("bootstrap", k));
   }
-  for (size_t k = 0; k < table.rows.size(); ++k) {
-    Table1Row& row = table.rows[k];
-    SetRatio(row, table.rows[1], rng.Stream("bootstrap ratio to handcrafted", k),
-             &row.ratio_to_handcrafted, &row.ratio_ci95);
-    SetRatio(row, table.rows[0], rng.Stream("bootstrap ratio to random", k), &row.ratio_to_random,
-             &row.ratio_to_random_ci95);
-  }
+  table.best_simple_rival = BestSimpleRival(table.rows, contestants);
+  Compare(&table.rows, kHandcrafted, kHandcrafted, &Table1Row::to_handcrafted, rng);
+  Compare(&table.rows, "random", "random", &Table1Row::to_random, rng);
+  Compare(&table.rows, table.best_simple_rival, "best simple rival",
+          &Table1Row::to_best_simple_rival, rng);
   return table;
 }
 

@@ -2,122 +2,133 @@
 
 #include <cmath>
 #include <cstdio>
-#include <functional>
+#include <cstdlib>
+#include <optional>
+#include <utility>
 
+#include "calibrato/evaluation/chart.h"
+#include "calibrato/evaluation/method_row.h"
+#include "calibrato/evaluation/paper_figures.h"
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
 namespace {
 
-double MeanOf(const Table1Row& row, bool converged_only,
-              const std::function<double(const Trial&)>& figure) {
-  std::vector<double> values;
-  for (const Trial& trial : row.trials) {
-    if (trial.converged || !converged_only) values.push_back(figure(trial));
-  }
-  return Mean(values);
-}
-
-Value Percent(const Interval& interval) {
-  Value value = Value::Array();
-  value.Append(100.0 * interval.low).Append(100.0 * interval.high);
-  return value;
-}
-
-Value Pair(const Interval& interval) {
-  Value value = Value::Array();
-  value.Append(interval.low).Append(interval.high);
-  return value;
-}
-
 Value Numbers(const Eigen::Vector3d& v) { return Value::Numbers(v); }
 
-Value RowValue(const Table1& table, const Table1Row& row) {
-  const auto converged = [&](double Trial::*figure) {
-    return MeanOf(row, true, [figure](const Trial& trial) { return trial.*figure; });
-  };
-  const auto all = [&](double Trial::*figure) {
-    return MeanOf(row, false, [figure](const Trial& trial) { return trial.*figure; });
-  };
-  Value value = Value::Object();
-  value.Set("task", TaskName(Task::kIntrinsic))
-      .Set("policy", row.policy)
-      .Set("carrier", CarrierName(table.options.carrier))
-      .Set("fidelity", "fast")
-      .Set("rigs", RigDistributionName(table.options.rigs))
-      .Set("seed", static_cast<int64_t>(table.options.seed))
-      .Set("n", static_cast<int64_t>(row.trials.size()))
-      .Set("mean_error_percent", 100.0 * row.mean_error)
-      .Set("ci95", Percent(row.mean_error_ci95))
-      .Set("median_error_percent", 100.0 * row.median_error)
-      .Set("ratio_to_handcrafted", row.ratio_to_handcrafted)
-      .Set("ratio_ci95", Pair(row.ratio_ci95))
-      .Set("ratio_to_random", row.ratio_to_random)
-      .Set("ratio_to_random_ci95", Pair(row.ratio_to_random_ci95))
-      .Set("path_length_m", all(&Trial::path_length_m))
-      .Set("path_length_original_m", all(&Trial::path_length_original_m))
-      .Set("motion_s", all(&Trial::motion_s))
-      .Set("scale", row.scale)
-      .Set("prediction_error_px", converged(&Trial::prediction_error_px))
-      .Set("focal_error_px", converged(&Trial::focal_error_px))
-      .Set("translation_error_m", Value())
-      .Set("rotation_error_rad", Value())
-      .Set("time_offset_error_s", Value())
-      .Set("a_optimality", converged(&Trial::a_optimality))
-      .Set("a_optimality_conditional", Value())
-      .Set("error_over_bound", std::sqrt(converged(&Trial::nees) / 4.0))
-      .Set("failures", row.num_failures);
+// With no more digits than a picture shows; pages hold thousands of these.
+Value FourDigits(double x) {
+  if (!std::isfinite(x)) return {};
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.4g", x);
+  return std::strtod(text, nullptr);
+}
+
+template <typename Vector>
+Value Rounded(const Vector& v) {
+  Value value = Value::Array();
+  for (const double x : v) value.Append(FourDigits(x));
   return value;
+}
+
+Value PlotOf(const Table1& table, const Table1Row& row) {
+  Value plot = SettingValue(table.options.setting);
+  plot.Set("policy", row.policy);
+  return plot;
+}
+
+void SetComparison(const std::string& name, const std::string& interval_key,
+                   const Comparison& comparison, Value* row) {
+  row->Set("ratio_to_" + name, FiniteValue(comparison.ratio))
+      .Set(interval_key, PairValue(comparison.ci95))
+      .Set("probability_as_" + name, FiniteValue(comparison.adjusted_probability));
+}
+
+void SetPaperFigures(Task task, const std::string& policy, Value* value) {
+  const std::optional<PaperFigures> theirs = FiguresOfPaper(task, policy);
+  value->Set("paper_mean_error_percent", theirs ? Value(theirs->mean_error_percent) : Value())
+      .Set("paper_path_length_m", theirs ? Value(theirs->path_length_m) : Value())
+      .Set("paper_a_optimality",
+           theirs && theirs->a_optimality ? Value(*theirs->a_optimality) : Value());
+}
+
+Value RowValue(const Table1& table, size_t k) {
+  const Table1Row& row = table.rows[k];
+  const ContestSetting& setting = table.options.setting;
+  Value value = MethodRow(setting, row.policy, row.trials,
+                          Rng(setting.seed).Stream(TaskName(setting.task)).Stream("row", k));
+  SetComparison("handcrafted", "ratio_ci95", row.to_handcrafted, &value);
+  SetComparison("random", "ratio_to_random_ci95", row.to_random, &value);
+  SetComparison("best_simple_rival", "ratio_to_best_simple_rival_ci95", row.to_best_simple_rival,
+                &value);
+  value.Set("best_simple_rival", table.best_simple_rival).Set("scale", row.scale);
+  SetPaperFigures(setting.task, row.policy, &value);
+  return value;
+}
+
+// Where the motion's loops begin and end [s]; a recorded trajectory is one.
+std::vector<double> LoopEnds(const PlannedMotion& motion) {
+  if (!motion.timed) return {0.0, motion.path.duration_s};
+  std::vector<double> ends = {0.0};
+  for (const double duration_s : motion.timed->loop_duration_s) {
+    ends.push_back(ends.back() + duration_s);
+  }
+  return ends;
 }
 
 // The camera's way and, now and then, where it looked, loop by loop.
-Value MotionPlot(const Table1Row& row) {
+Value MotionPlot(const Table1& table, const Table1Row& row) {
   constexpr int kPointsALoop = 60;
   constexpr int kAxesEvery = 6;
-  const Rigid3 T_e_c0 = PaperRig().T_e_c0;
+  const Rigid3 T_e_c0 = PlanningScene(table.options.setting).T_e_c0;
+  const std::vector<double> ends = LoopEnds(row.example);
   Value loops = Value::Array();
   Value axes = Value::Array();
-  double start_s = 0.0;
-  for (const double duration_s : row.example.loop_duration_s) {
+  for (size_t i = 0; i + 1 < ends.size(); ++i) {
     Value loop = Value::Array();
     for (int k = 0; k <= kPointsALoop; ++k) {
-      const Rigid3 T_b_c0 = row.example.At(start_s + duration_s * k / kPointsALoop).T_b_e * T_e_c0;
-      loop.Append(Numbers(T_b_c0.t));
+      const double t_s = ends[i] + (ends[i + 1] - ends[i]) * k / kPointsALoop;
+      const Rigid3 T_b_c0 = row.example.path.at(t_s).T_b_e * T_e_c0;
+      loop.Append(Rounded(T_b_c0.t));
       if (k % kAxesEvery == 0) {
         Eigen::Matrix<double, 6, 1> axis;
         axis << T_b_c0.t, T_b_c0.R.col(2);
-        axes.Append(Value::Numbers(axis));
+        axes.Append(Rounded(axis));
       }
     }
-    start_s += duration_s;
     loops.Append(std::move(loop));
   }
-  Value plot = Value::Object();
-  plot.Set("policy", row.policy)
-      .Set("path_length_m", PathLength(row.example.motion))
-      .Set("motion_s", row.example.duration_s())
+  Value plot = PlotOf(table, row);
+  plot.Set("path_length_m", row.example.path_length_m)
+      .Set("motion_s", row.example.path.duration_s)
       .Set("loops", std::move(loops))
       .Set("axis_b", std::move(axes));
   return plot;
 }
 
-Value CoveragePlot(const Table1Row& row) {
+// Evenly thinned: more points than this tell the eye nothing.
+Value CoveragePlot(const Table1& table, const Table1Row& row) {
+  constexpr Eigen::Index kMostPoints = 1500;
+  Eigen::Index num_corners = 0;
+  for (const BoardView& view : row.example_views) num_corners += view.num_corners();
+  const Eigen::Index stride = num_corners / kMostPoints + 1;
   Value pixels = Value::Array();
   const auto rounded = [](double x) { return std::round(10.0 * x) / 10.0; };
+  Eigen::Index k_of_all = 0;
   for (const BoardView& view : row.example_views) {
     for (Eigen::Index k = 0; k < view.num_corners(); ++k) {
+      if (k_of_all++ % stride != 0) continue;
       Value pixel = Value::Array();
       pixel.Append(rounded(view.pixels(0, k))).Append(rounded(view.pixels(1, k)));
       pixels.Append(std::move(pixel));
     }
   }
-  Value plot = Value::Object();
-  plot.Set("policy", row.policy).Set("pixels", std::move(pixels));
+  Value plot = PlotOf(table, row);
+  plot.Set("pixels", std::move(pixels));
   return plot;
 }
 
-Value BoardOutline() {
-  const Rig rig = PaperRig();
+Value BoardOutline(const Rig& rig) {
   const Rigid3 T_b_g = ArmBaseInWorld().Inverse() * rig.T_w_g;
   const Eigen::Matrix3Xd points = BoardPoints(rig.board);
   const Eigen::Vector3d far = points.rowwise().maxCoeff();
@@ -131,30 +142,35 @@ Value BoardOutline() {
 
 }  // namespace
 
-Value ToValue(const Table1& table) {
+Value ToValue(const std::vector<Table1>& tables, const std::string& kind) {
   Value rows = Value::Array();
-  for (const Table1Row& row : table.rows) rows.Append(RowValue(table, row));
+  for (const Table1& table : tables) {
+    for (size_t k = 0; k < table.rows.size(); ++k) rows.Append(RowValue(table, k));
+  }
   Value value = Value::Object();
-  value.Set("kind", "table1").Set("rows", std::move(rows));
+  value.Set("kind", kind).Set("rows", std::move(rows));
   return value;
 }
 
-Value Table1Plots(const Table1& table) {
+Value Table1Plots(const std::vector<Table1>& tables) {
   Value errors = Value::Array();
   Value motions = Value::Array();
   Value coverage = Value::Array();
-  for (const Table1Row& row : table.rows) {
-    Value of_rigs = Value::Array();
-    for (const Trial& trial : row.trials) {
-      of_rigs.Append(trial.converged ? Value(trial.relative_error) : Value());
+  for (const Table1& table : tables) {
+    for (const Table1Row& row : table.rows) {
+      Value of_rigs = Value::Array();
+      for (const std::vector<Trial>& member : row.trials) {
+        for (const Trial& trial : member) of_rigs.Append(FourDigits(trial.relative_error));
+      }
+      Value entry = PlotOf(table, row);
+      entry.Set("relative_error", std::move(of_rigs));
+      errors.Append(std::move(entry));
+      motions.Append(MotionPlot(table, row));
+      coverage.Append(CoveragePlot(table, row));
     }
-    Value entry = Value::Object();
-    entry.Set("policy", row.policy).Set("relative_error", std::move(of_rigs));
-    errors.Append(std::move(entry));
-    motions.Append(MotionPlot(row));
-    coverage.Append(CoveragePlot(row));
   }
-  const Resolution resolution = PaperRig().cameras.front().resolution;
+  const Rig scene = tables.empty() ? PaperRig() : PlanningScene(tables.front().options.setting);
+  const Resolution resolution = scene.cameras.front().resolution;
   Value size = Value::Array();
   size.Append(resolution.width).Append(resolution.height);
   Value plots = Value::Object();
@@ -162,32 +178,59 @@ Value Table1Plots(const Table1& table) {
       .Set("motions", std::move(motions))
       .Set("coverage", std::move(coverage))
       .Set("resolution", std::move(size))
-      .Set("board_outline_b", BoardOutline());
+      .Set("board_outline_b", BoardOutline(scene));
   return plots;
 }
 
+std::string TrialsCsv(const std::vector<Table1>& tables) {
+  std::string text =
+      "task,policy,training_seed,rig,failure,relative_error,path_length_m,"
+      "path_length_original_m,motion_s,num_frames,nees";
+  for (const NamedFigure& named : kTrialFigures) text += std::string(",") + named.key;
+  text += "\n";
+  const auto cell = [](double x) { return std::isfinite(x) ? "," + FormatNumber(x) : ","; };
+  for (const Table1& table : tables) {
+    for (const Table1Row& row : table.rows) {
+      for (size_t m = 0; m < row.trials.size(); ++m) {
+        for (size_t i = 0; i < row.trials[m].size(); ++i) {
+          const Trial& trial = row.trials[m][i];
+          text += TaskName(table.options.setting.task) + "," + CsvText(row.policy) + "," +
+                  std::to_string(m) + "," + std::to_string(i) + "," + CsvText(trial.failure) +
+                  cell(trial.relative_error) + cell(trial.path_length_m) +
+                  cell(trial.path_length_original_m) + cell(trial.motion_s) + "," +
+                  std::to_string(trial.num_frames) + cell(trial.nees);
+          for (const NamedFigure& named : kTrialFigures) text += cell(trial.*named.figure);
+          text += "\n";
+        }
+      }
+    }
+  }
+  return text;
+}
+
 std::string Table1Text(const Table1& table) {
-  char line[256];
+  const ContestSetting& setting = table.options.setting;
+  char line[300];
   std::snprintf(line, sizeof(line),
-                "intrinsic task, carrier %s, rigs %s, fidelity fast, n = %d, seed %llu\n"
-                "%-14s %-24s %8s %-21s %8s %8s %6s %6s\n",
-                CarrierName(table.options.carrier).c_str(),
-                RigDistributionName(table.options.rigs).c_str(), table.options.num_rigs,
-                static_cast<unsigned long long>(table.options.seed), "policy",
-                "mean error [%] (95 %)", "median", "over handcrafted", "path [m]", "time [s]",
-                "scale", "failed");
+                "%s task, carrier %s, rigs %s, fidelity %s, n = %d, seed %llu; best simple rival: "
+                "%s\n%-30s %-24s %8s %-21s %8s %8s %6s %6s\n",
+                TaskName(setting.task).c_str(), CarrierName(setting.carrier).c_str(),
+                RigsName(setting).c_str(), FidelityName(setting.fidelity).c_str(), setting.num_rigs,
+                static_cast<unsigned long long>(setting.seed), table.best_simple_rival.c_str(),
+                "policy", "mean error [%] (95 %)", "median", "over handcrafted", "path [m]",
+                "time [s]", "bound", "failed");
   std::string text = line;
   for (const Table1Row& row : table.rows) {
     char mean[64];
     char ratio[64];
     std::snprintf(mean, sizeof(mean), "%.4f (%.4f, %.4f)", 100.0 * row.mean_error,
                   100.0 * row.mean_error_ci95.low, 100.0 * row.mean_error_ci95.high);
-    std::snprintf(ratio, sizeof(ratio), "%.3f (%.3f, %.3f)", row.ratio_to_handcrafted,
-                  row.ratio_ci95.low, row.ratio_ci95.high);
-    std::snprintf(line, sizeof(line), "%-14s %-24s %8.4f %-21s %8.3f %8.2f %6.3f %6d\n",
+    std::snprintf(ratio, sizeof(ratio), "%.3f (%.3f, %.3f)", row.to_handcrafted.ratio,
+                  row.to_handcrafted.ci95.low, row.to_handcrafted.ci95.high);
+    std::snprintf(line, sizeof(line), "%-30s %-24s %8.4f %-21s %8.3f %8.2f %6.3f %6d\n",
                   row.policy.c_str(), mean, 100.0 * row.median_error, ratio,
-                  MeanOf(row, false, [](const Trial& trial) { return trial.path_length_m; }),
-                  MeanOf(row, false, [](const Trial& trial) { return trial.motion_s; }), row.scale,
+                  row.MeanOf(&Trial::path_length_m), row.MeanOf(&Trial::motion_s),
+                  std::sqrt(row.consistency.mean_nees / NeesDimension(setting.task)),
                   row.num_failures);
     text += line;
   }

@@ -8,39 +8,7 @@ namespace calibrato {
 namespace {
 
 constexpr std::string_view kMagic = "CALLEARN";
-constexpr int64_t kVersion = 1;
-
-void Write(const NetworkWeights& network, ByteWriter& writer) {
-  writer.Write(network.weights);
-  writer.Write(network.first_moment);
-  writer.Write(network.second_moment);
-  writer.Write(network.num_updates);
-}
-
-NetworkWeights ReadNetwork(ByteReader& reader) {
-  NetworkWeights network;
-  network.weights = reader.ReadFloats();
-  network.first_moment = reader.ReadFloats();
-  network.second_moment = reader.ReadFloats();
-  network.num_updates = reader.ReadInt();
-  return network;
-}
-
-void Write(const Normalisation& normalisation, ByteWriter& writer) {
-  writer.Write(normalisation.observation_mean);
-  writer.Write(normalisation.observation_stddev);
-  writer.Write(normalisation.reward_mean);
-  writer.Write(normalisation.reward_stddev);
-}
-
-Normalisation ReadNormalisation(ByteReader& reader) {
-  Normalisation normalisation;
-  normalisation.observation_mean = reader.ReadVector();
-  normalisation.observation_stddev = reader.ReadVector();
-  normalisation.reward_mean = reader.ReadDouble();
-  normalisation.reward_stddev = reader.ReadDouble();
-  return normalisation;
-}
+constexpr int64_t kVersion = 2;
 
 void Write(const Transition& transition, ByteWriter& writer) {
   writer.Write(static_cast<int64_t>(transition.history.actions.size()));
@@ -88,22 +56,22 @@ std::string ToBytes(const Checkpoint& checkpoint) {
     writer.Write(std::string_view(name));
     writer.Write(std::string_view(value));
   }
+  writer.Write(static_cast<int64_t>(checkpoint.stage_episodes.size()));
+  for (const int episodes : checkpoint.stage_episodes) writer.Write(int64_t{episodes});
   writer.Write(int64_t{checkpoint.num_warm_up_episodes});
   writer.Write(int64_t{checkpoint.num_episodes_done});
   writer.Write(checkpoint.num_calibrations);
   writer.Write(checkpoint.best_return);
   writer.Write(checkpoint.best_test_return);
   writer.Write(checkpoint.best_test_actions);
-  Write(checkpoint.model.normalisation, writer);
-  Write(checkpoint.model.dynamics, writer);
-  Write(checkpoint.model.reward, writer);
+  writer.Write(int64_t{checkpoint.num_rollbacks});
+  writer.Write(checkpoint.carried_over);
+  writer.Write(std::string_view(checkpoint.agent));
   writer.Write(static_cast<int64_t>(checkpoint.replay_memory.capacity()));
   writer.Write(static_cast<int64_t>(checkpoint.replay_memory.size()));
   for (size_t i = 0; i < checkpoint.replay_memory.size(); ++i) {
     Write(checkpoint.replay_memory[i], writer);
   }
-  writer.Write(static_cast<int64_t>(checkpoint.particle_memory.size()));
-  for (const Eigen::MatrixXd& best : checkpoint.particle_memory) writer.Write(best);
   writer.Write(std::string_view(checkpoint.training_jsonl));
   return Sealed(kMagic, kVersion, writer.bytes());
 }
@@ -117,25 +85,25 @@ Checkpoint CheckpointFromBytes(std::string_view bytes, const std::string& path) 
     std::string value = reader.ReadText();
     checkpoint.options.emplace_back(std::move(name), std::move(value));
   }
+  const int64_t num_stages = reader.ReadInt();
+  for (int64_t i = 0; i < num_stages; ++i) {
+    checkpoint.stage_episodes.push_back(static_cast<int>(reader.ReadInt()));
+  }
   checkpoint.num_warm_up_episodes = static_cast<int>(reader.ReadInt());
   checkpoint.num_episodes_done = static_cast<int>(reader.ReadInt());
   checkpoint.num_calibrations = reader.ReadInt();
   checkpoint.best_return = reader.ReadDouble();
   checkpoint.best_test_return = reader.ReadDouble();
   checkpoint.best_test_actions = reader.ReadMatrix();
-  checkpoint.model.normalisation = ReadNormalisation(reader);
-  checkpoint.model.dynamics = ReadNetwork(reader);
-  checkpoint.model.reward = ReadNetwork(reader);
+  checkpoint.num_rollbacks = static_cast<int>(reader.ReadInt());
+  checkpoint.carried_over = reader.ReadVector();
+  checkpoint.agent = reader.ReadText();
   const int64_t capacity = reader.ReadInt();
   const int64_t num_transitions = reader.ReadInt();
   if (capacity < 1 || num_transitions > capacity) reader.Fail("a replay memory of impossible size");
   checkpoint.replay_memory = ReplayMemory(static_cast<size_t>(capacity));
   for (int64_t i = 0; i < num_transitions; ++i) {
     checkpoint.replay_memory.Add(ReadTransition(reader));
-  }
-  const int64_t num_steps = reader.ReadInt();
-  for (int64_t t = 0; t < num_steps; ++t) {
-    checkpoint.particle_memory.push_back(reader.ReadMatrix());
   }
   checkpoint.training_jsonl = reader.ReadText();
   reader.ExpectEnd();

@@ -16,10 +16,10 @@ Checkpoint SomeCheckpoint() {
   checkpoint.best_return = 1.25;
   checkpoint.best_test_return = 1.125;
   checkpoint.best_test_actions = Eigen::MatrixXd::Constant(36, 2, 0.01);
-  checkpoint.model.normalisation = UnitNormalisation(2);
-  checkpoint.model.normalisation.reward_mean = 0.5;
-  checkpoint.model.dynamics = {{1.0F, 2.0F}, {3.0F, 4.0F}, {5.0F, 6.0F}, 56};
-  checkpoint.model.reward = {{-1.0F}, {-2.0F}, {-3.0F}, 57};
+  checkpoint.stage_episodes = {5, 6};
+  checkpoint.num_rollbacks = 2;
+  checkpoint.carried_over = Eigen::Vector2d(0.25, 3.5);
+  checkpoint.agent = std::string("an agent\0with bytes", 19);
   checkpoint.replay_memory = ReplayMemory(5);
   const LoopCoefficients action = LoopCoefficients::LinSpaced(-1.0, 1.0);
   checkpoint.replay_memory.Add({{{Eigen::Vector2d(1, 2)}, {}}, action, 0.5, Eigen::Vector2d(3, 4)});
@@ -27,7 +27,6 @@ Checkpoint SomeCheckpoint() {
                                 -action,
                                 -0.5,
                                 Eigen::Vector2d(5, 6)});
-  checkpoint.particle_memory = {Eigen::MatrixXd::Constant(72, 5, 0.25), Eigen::MatrixXd(36, 0)};
   checkpoint.training_jsonl = "{\"episode\":1}\n";
   return checkpoint;
 }
@@ -42,14 +41,14 @@ TEST(Checkpoint, ComesBackWhole) {
   EXPECT_EQ(after.best_return, 1.25);
   EXPECT_EQ(after.best_test_return, 1.125);
   EXPECT_EQ(after.best_test_actions, Eigen::MatrixXd::Constant(36, 2, 0.01));
-  EXPECT_EQ(after.model.normalisation.reward_mean, 0.5);
-  EXPECT_EQ(after.model.dynamics.second_moment, before.model.dynamics.second_moment);
-  EXPECT_EQ(after.model.reward.num_updates, 57);
+  EXPECT_EQ(after.stage_episodes, (std::vector<int>{5, 6}));
+  EXPECT_EQ(after.num_rollbacks, 2);
+  EXPECT_EQ(after.carried_over, before.carried_over);
+  EXPECT_EQ(after.agent, before.agent);
   EXPECT_EQ(after.replay_memory.capacity(), 5U);
   ASSERT_EQ(after.replay_memory.size(), 2U);
   EXPECT_EQ(after.replay_memory[1].history.actions[0], before.replay_memory[0].action);
   EXPECT_EQ(after.replay_memory[1].next_observation, Eigen::Vector2d(5, 6));
-  EXPECT_EQ(after.particle_memory[0], before.particle_memory[0]);
   EXPECT_EQ(after.training_jsonl, before.training_jsonl);
   EXPECT_EQ(ToBytes(after), ToBytes(before));
 }

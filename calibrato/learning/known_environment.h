@@ -3,6 +3,7 @@
 // For tests of the room: an environment whose best action is known.
 
 #include <cassert>
+#include <memory>
 
 #include "calibrato/mdp/environment.h"
 
@@ -23,6 +24,9 @@ class KnownEnvironment : public Environment {
     return best;
   }
 
+  [[nodiscard]] std::unique_ptr<Environment> Clone() const override {
+    return std::make_unique<KnownEnvironment>(*this);
+  }
   [[nodiscard]] int observation_size() const override { return 3; }
   [[nodiscard]] int horizon() const override { return horizon_; }
 
@@ -39,12 +43,12 @@ class KnownEnvironment : public Environment {
     StepResult result;
     if (action[0] > refuse_above_) {
       result.executed = false;
-      result.terms = {{"refusal", -2.0}};
+      result.terms = {{"refusal", "refusals", 1.0, -2.0}};
       result.reward = -2.0;
     } else {
       observation_.head<2>() += action.head<2>() / 0.015;
       error_ = (action - BestAction()).squaredNorm() / (36.0 * 0.015 * 0.015);
-      result.terms = {{"presence", 4.0}, {"distance", -4.0 * error_}};
+      result.terms = {{"presence", "presence", 1.0, 4.0}, {"distance", "distance", error_, -4.0}};
       result.reward = 4.0 - 4.0 * error_;
     }
     result.observation = observation_;

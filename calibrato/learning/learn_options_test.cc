@@ -61,5 +61,54 @@ TEST(CourseOfTraining, ChangesWithTheSeedButNotWithTheNumberOfEpisodes) {
   EXPECT_NE(CourseOfTraining(a), CourseOfTraining(b));
 }
 
+TEST(PaperStages, AreThePapers) {
+  EXPECT_EQ(PaperStages(Task::kIntrinsic, 1000).size(), 1U);
+  EXPECT_EQ(PaperStages(Task::kJoint, 1000).size(), 1U);
+  LearnOptions options;
+  options.num_episodes = PaperNumEpisodes(Task::kExtrinsic);
+  options.stages = PaperStages(Task::kExtrinsic, options.num_episodes);
+  CheckOptions(options);
+  ASSERT_EQ(options.stages.size(), 2U);
+  EXPECT_EQ(FirstEpisode(options, 1), 1000);
+  EXPECT_EQ(FirstEpisode(options, 2), 1650);
+  EXPECT_FALSE(options.stages[0].training.calibrate);
+  EXPECT_TRUE(options.stages[1].training.calibrate);
+  EXPECT_EQ(options.stages[1].training.max_iterations, 1);
+  EXPECT_EQ(options.stages[1].test.max_iterations, 10);
+  EXPECT_EQ(StageOf(options, 999), 0U);
+  EXPECT_EQ(StageOf(options, 1000), 1U);
+  EXPECT_EQ(StageOf(options, 1649), 1U);
+}
+
+TEST(PaperStages, OfAnyLengthHaveSomethingToTrainInEach) {
+  for (int episodes = 2; episodes < 100; ++episodes) {
+    LearnOptions options;
+    options.num_episodes = episodes;
+    options.stages = PaperStages(Task::kExtrinsic, episodes);
+    CheckOptions(options);
+    EXPECT_GE(options.stages[0].num_episodes, 1);
+    EXPECT_LT(options.stages[0].num_episodes, episodes);
+    if (episodes > 3) {
+      EXPECT_LT(NumWarmUpEpisodes(options), options.stages[0].num_episodes);
+    }
+  }
+}
+
+TEST(CheckOptions, NamesPlannersThatThereAre) {
+  LearnOptions options;
+  options.planning.planner = "guessing";
+  EXPECT_THAT([&] { CheckOptions(options); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("unknown planner 'guessing'"), HasSubstr("cma-es"))));
+  options = LearnOptions();
+  options.round = 0;
+  EXPECT_THAT([&] { CheckOptions(options); }, ThrowsMessage<InputError>(HasSubstr("round")));
+  options = LearnOptions();
+  options.stages = {TrainingStage(), TrainingStage()};
+  options.stages.front().num_episodes = options.num_episodes;
+  EXPECT_THAT([&] { CheckOptions(options); },
+              ThrowsMessage<InputError>(HasSubstr("episodes of stage learned")));
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -62,5 +62,37 @@ TEST(PlanAction, GetsBetterFromWhatItRemembers) {
   EXPECT_GT(last, first + 0.1);
 }
 
+TEST(PlanAction, RanksWhatEveryPlannerFound) {
+  const HistoryModel model = SomeModel();
+  for (const std::string& planner : ModelPlannerNames()) {
+    SCOPED_TRACE(planner);
+    PlanningOptions options;
+    options.planner = planner;
+    Rng rng(1);
+    const Plan plan = PlanAction(model, kStart, 2, kNothing, options, Exploration::kTesting, rng);
+    ASSERT_EQ(plan.best.cols(), 5);
+    EXPECT_EQ(plan.action, plan.best.col(0).head<36>());
+    EXPECT_LE(plan.best.cwiseAbs().maxCoeff(), 0.015);
+    const Eigen::VectorXd values =
+        model.PredictReturns(model.Encode(kStart), plan.best, false).values;
+    // Batches of other sizes may differ in the last bit of a float.
+    EXPECT_NEAR(plan.predicted_return, values[0], 1e-5);
+    for (int i = 1; i < 5; ++i) EXPECT_LE(values[i], values[i - 1] + 1e-5);
+    EXPECT_NEAR(plan.best_so_far.back(), values[0], 1e-5);
+    // What it is given is where it begins: never worse than that.
+    Rng other(2);
+    const Plan later =
+        PlanAction(model, kStart, 2, plan.best, options, Exploration::kTesting, other);
+    EXPECT_GE(later.predicted_return, plan.predicted_return - 1e-5);
+  }
+}
+
+TEST(PlanAction, GivesEveryPlannerTheSameBudget) {
+  PlanningOptions options;
+  EXPECT_EQ(NumEvaluations(options), 90);
+  options.swarm.num_iterations = 9;
+  EXPECT_EQ(NumEvaluations(options), 150);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -68,20 +68,35 @@ struct HistoryModel::Impl {
     return (action / action_limit).cast<float>();
   }
 
-  // @param histories  The longest first.
+  // Which pairs of a history are encoded.
+  std::vector<size_t> EncodedPairs(const History& history) const {
+    std::vector<size_t> pairs;
+    for (size_t k = 0; k < history.observations.size(); ++k) {
+      const bool masked = k == 0 || history.observations[k] == history.observations[0];
+      if (!(options.mask_histories && masked)) pairs.push_back(k);
+    }
+    return pairs;
+  }
+
+  // @param histories  Those with the most encoded pairs first.
   SequenceBatch MakeBatch(const std::vector<const History*>& histories) const {
     SequenceBatch batch;
-    const size_t longest = histories.front()->observations.size();
+    batch.num_sequences = static_cast<int64_t>(histories.size());
+    std::vector<std::vector<size_t>> encoded;
     size_t num_pairs = 0;
-    for (const History* history : histories) num_pairs += history->observations.size();
+    for (const History* history : histories) {
+      encoded.push_back(EncodedPairs(*history));
+      num_pairs += encoded.back().size();
+    }
+    const size_t longest = encoded.front().size();
     RowMajor pairs(static_cast<Eigen::Index>(num_pairs), num_observations + kActionSize);
     Eigen::Index row = 0;
     for (size_t s = 0; s < longest; ++s) {
       int64_t num_active = 0;
-      for (const History* history : histories) {
-        const size_t start = longest - history->observations.size();
+      for (size_t i = 0; i < histories.size(); ++i) {
+        const size_t start = longest - encoded[i].size();
         if (start > s) break;
-        WritePair(*history, s - start, pairs.row(row++));
+        WritePair(*histories[i], encoded[i][s - start], pairs.row(row++));
         ++num_active;
       }
       batch.num_active.push_back(num_active);
@@ -95,8 +110,8 @@ struct HistoryModel::Impl {
     for (const Transition*& transition : drawn) {
       transition = &memory[rng.UniformIndex(memory.size())];
     }
-    std::stable_sort(drawn.begin(), drawn.end(), [](const Transition* a, const Transition* b) {
-      return a->history.actions.size() > b->history.actions.size();
+    std::stable_sort(drawn.begin(), drawn.end(), [this](const Transition* a, const Transition* b) {
+      return EncodedPairs(a->history).size() > EncodedPairs(b->history).size();
     });
     std::vector<const History*> histories;
     RowMajor actions(options.minibatch_size, kActionSize);
@@ -156,6 +171,11 @@ HistoryModel& HistoryModel::operator=(HistoryModel&&) noexcept = default;
 int HistoryModel::observation_size() const { return impl_->num_observations; }
 const NetworkOptions& HistoryModel::options() const { return impl_->options; }
 const Normalisation& HistoryModel::normalisation() const { return impl_->normalisation; }
+
+void HistoryModel::SetLearningRate(double learning_rate) {
+  assert(learning_rate > 0.0);
+  impl_->options.learning_rate = learning_rate;
+}
 
 void HistoryModel::SetNormalisation(const Normalisation& normalisation) {
   assert(normalisation.observation_mean.size() == impl_->num_observations);

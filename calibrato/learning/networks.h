@@ -24,6 +24,10 @@ struct NetworkOptions {
   /// distance (Bishop, "Training with noise is equivalent to Tikhonov regularization", Neural
   /// Computation 1995). Not in the paper.
   double action_jitter = 0.5;
+  /// The original's mistake (Mistake::kMaskedHistories): a history is encoded without the pairs
+  /// that have no action before them (the first) or an observation that is still that of the start
+  /// (no calibration yet). What is left may be nothing.
+  bool mask_histories = false;
 };
 
 /// Mean squared errors over the minibatches of one Train(), in normalised units.
@@ -82,6 +86,9 @@ class HistoryModel {
 
   [[nodiscard]] int observation_size() const;
   [[nodiscard]] const NetworkOptions& options() const;
+
+  /// Of both networks' steps from now on, > 0.
+  void SetLearningRate(double learning_rate);
 
   /// UnitNormalisation() until set.
   void SetNormalisation(const Normalisation& normalisation);

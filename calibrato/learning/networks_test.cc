@@ -380,5 +380,76 @@ TEST(Train, ReturnsALossThatIsNotFinite) {
   EXPECT_FALSE(std::isfinite(model.Train(memory, rng).dynamics));
 }
 
+// The original's mask: what is left of a history may be nothing.
+TEST(MaskedHistories, SkipTheFirstPairAndThoseWithoutACalibration) {
+  NetworkOptions options;
+  options.hidden_size = 8;
+  options.mask_histories = true;
+  Rng rng(4);
+  const HistoryModel model(2, options, 0.015, rng);
+  const Eigen::Vector2d start(0.5, -0.5);
+  const Eigen::Vector2d later(1.5, 0.25);
+  const LoopCoefficients action = LoopCoefficients::Constant(0.01);
+  const EncodedHistory first = model.Encode({{start}, {}});
+  EXPECT_EQ(first.dynamics, Eigen::VectorXf::Zero(8));
+  EXPECT_EQ(first.reward, Eigen::VectorXf::Zero(8));
+  // Without a calibration every step is skipped, whatever was done.
+  EXPECT_EQ(model.Encode({{start, start, start}, {action, -action}}).reward, first.reward);
+  // With one, only what came before it.
+  const EncodedHistory seen = model.Encode({{start, later}, {action}});
+  EXPECT_NE(seen.reward, first.reward);
+  EXPECT_EQ(model.Encode({{start, start, later}, {-action, action}}).reward, seen.reward);
+
+  options.mask_histories = false;
+  Rng same(4);
+  const HistoryModel whole(2, options, 0.015, same);
+  EXPECT_NE(whole.Encode({{start}, {}}).reward, first.reward);
+}
+
+TEST(MaskedHistories, AreTrainedOnTogetherWithEmptyOnes) {
+  NetworkOptions options;
+  options.hidden_size = 8;
+  options.mask_histories = true;
+  options.learning_rate = 1e-2;
+  Rng rng(5);
+  HistoryModel model(2, options, 0.015, rng);
+  const Eigen::Vector2d start(0.0, 0.0);
+  const Eigen::Vector2d later(1.0, -1.0);
+  const LoopCoefficients action = LoopCoefficients::Constant(0.01);
+  ReplayMemory memory(10);
+  memory.Add({{{start}, {}}, action, 1.0, later});
+  memory.Add({{{start, later}, {action}}, action, -1.0, start});
+  memory.Add({{{start, start}, {action}}, -action, 0.5, start});
+  const TrainingLoss before = model.Train(memory, rng);
+  TrainingLoss after;
+  for (int i = 0; i < 40; ++i) after = model.Train(memory, rng);
+  EXPECT_LT(after.dynamics, 0.7 * before.dynamics);
+  EXPECT_LT(after.reward, 0.7 * before.reward);
+}
+
+TEST(HistoryModel, TakesSmallerStepsAtASmallerLearningRate) {
+  NetworkOptions options;
+  options.hidden_size = 8;
+  const auto step = [&](double learning_rate) {
+    Rng rng(6);
+    HistoryModel model(1, options, 0.015, rng);
+    model.SetLearningRate(learning_rate);
+    ReplayMemory memory(1);
+    memory.Add({{{Eigen::VectorXd::Zero(1)}, {}},
+                LoopCoefficients::Zero(),
+                1.0,
+                Eigen::VectorXd::Ones(1)});
+    const std::vector<float> before = model.state().reward.weights;
+    (void)model.Train(memory, rng);
+    const std::vector<float> after = model.state().reward.weights;
+    float largest = 0.0F;
+    for (size_t i = 0; i < before.size(); ++i) {
+      largest = std::max(largest, std::abs(after[i] - before[i]));
+    }
+    return largest;
+  };
+  EXPECT_NEAR(step(1e-5) / step(1e-4), 0.1, 0.05);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -1,5 +1,6 @@
 #include "calibrato/learning/policy.h"
 
+#include <algorithm>
 #include <charconv>
 #include <vector>
 
@@ -10,7 +11,7 @@
 namespace calibrato {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2;
 constexpr std::string_view kMagic = "CALPOLIC";
 constexpr size_t kMaxBytes = size_t{1} << 30;
 constexpr int64_t kMany = 1'000'000;
@@ -18,6 +19,7 @@ constexpr int64_t kMany = 1'000'000;
 Value ToValue(const PlanningOptions& planning) {
   const SwarmOptions& swarm = planning.swarm;
   return Value::Object()
+      .Set("planner", planning.planner)
       .Set("num_particles", swarm.num_particles)
       .Set("num_iterations", swarm.num_iterations)
       .Set("num_remembered", swarm.num_remembered)
@@ -25,12 +27,15 @@ Value ToValue(const PlanningOptions& planning) {
       .Set("social_weight", swarm.social_weight)
       .Set("gradient_weight", swarm.gradient_weight)
       .Set("inertia_weight", swarm.inertia_weight)
-      .Set("action_limit", swarm.limit);
+      .Set("action_limit", swarm.limit)
+      .Set("frozen", swarm.frozen);
 }
 
 PlanningOptions PlanningFromValue(const Value& value) {
   PlanningOptions planning;
+  planning.planner = value.At("planner").AsString();
   SwarmOptions& swarm = planning.swarm;
+  swarm.frozen = value.At("frozen").AsBool();
   swarm.num_particles = static_cast<int>(value.At("num_particles").AsInt(1, 100'000));
   swarm.num_iterations = static_cast<int>(value.At("num_iterations").AsInt(0, kMany));
   swarm.num_remembered = static_cast<int>(value.At("num_remembered").AsInt(0, swarm.num_particles));
@@ -80,8 +85,17 @@ uint64_t SeedFromValue(const Value& value) {
   return seed;
 }
 
+bool PlansOnNetworks(const Policy& policy) {
+  const std::vector<std::string> names = ModelPlannerNames();
+  return std::find(names.begin(), names.end(), policy.planning.planner) != names.end();
+}
+
 std::string NumbersOf(const Policy& policy) {
   ByteWriter writer;
+  if (!PlansOnNetworks(policy)) {
+    writer.Write(std::string_view(policy.agent));
+    return Sealed(kMagic, kFormatVersion, writer.bytes());
+  }
   writer.Write(policy.model.dynamics.weights);
   writer.Write(policy.model.reward.weights);
   for (const Eigen::MatrixXd& best : policy.particle_memory) writer.Write(best);
@@ -91,6 +105,11 @@ std::string NumbersOf(const Policy& policy) {
 void ReadNumbers(const std::string& path, Policy& policy) {
   const std::string bytes = ReadFile(path, kMaxBytes);
   ByteReader reader(Unsealed(kMagic, kFormatVersion, bytes, path), path);
+  if (!PlansOnNetworks(policy)) {
+    policy.agent = reader.ReadText();
+    reader.ExpectEnd();
+    return;
+  }
   policy.model.dynamics.weights = reader.ReadFloats();
   policy.model.reward.weights = reader.ReadFloats();
   Rng unused(0);
@@ -113,18 +132,21 @@ void ReadNumbers(const std::string& path, Policy& policy) {
 }  // namespace
 
 void WritePolicy(const Policy& policy, const std::string& folder) {
-  const Value header = Value::Object()
-                           .Set("format_version", kFormatVersion)
-                           .Set("task", TaskName(policy.task))
-                           .Set("preset", policy.preset)
-                           .Set("seed", std::to_string(policy.seed))
-                           .Set("episodes", policy.num_episodes)
-                           .Set("carrier", CarrierName(policy.motion.carrier))
-                           .Set("horizon", policy.horizon)
-                           .Set("observation_size", policy.observation_size)
-                           .Set("hidden_size", policy.networks.hidden_size)
-                           .Set("planning", ToValue(policy.planning))
-                           .Set("normalisation", ToValue(policy.model.normalisation));
+  Value header = Value::Object()
+                     .Set("format_version", kFormatVersion)
+                     .Set("task", TaskName(policy.task))
+                     .Set("preset", policy.preset)
+                     .Set("stage", policy.stage)
+                     .Set("mistakes", policy.mistakes)
+                     .Set("seed", std::to_string(policy.seed))
+                     .Set("episodes", policy.num_episodes)
+                     .Set("carrier", CarrierName(policy.motion.carrier))
+                     .Set("horizon", policy.horizon)
+                     .Set("observation_size", policy.observation_size)
+                     .Set("hidden_size", policy.networks.hidden_size)
+                     .Set("mask_histories", policy.networks.mask_histories)
+                     .Set("planning", ToValue(policy.planning));
+  if (PlansOnNetworks(policy)) header.Set("normalisation", ToValue(policy.model.normalisation));
   OutputFolder out(folder);
   out.Add("policy.yaml", ToYaml(header));
   out.Add("policy.bin", NumbersOf(policy));
@@ -144,14 +166,19 @@ Policy ReadPolicy(const std::string& folder) {
   Policy policy;
   policy.task = TaskFromName(header.At("task").AsString());
   policy.preset = header.At("preset").AsString();
+  policy.stage = header.At("stage").AsString();
+  policy.mistakes = header.At("mistakes").AsString();
   policy.seed = SeedFromValue(header.At("seed"));
   policy.num_episodes = static_cast<int>(header.At("episodes").AsInt(0, kMany));
   policy.horizon = static_cast<int>(header.At("horizon").AsInt(1, 1000));
   policy.observation_size = static_cast<int>(header.At("observation_size").AsInt(1, 10'000));
   policy.networks.hidden_size = static_cast<int>(header.At("hidden_size").AsInt(1, 4096));
+  policy.networks.mask_histories = header.At("mask_histories").AsBool();
   policy.planning = PlanningFromValue(header.At("planning"));
-  policy.model.normalisation =
-      NormalisationFromValue(header.At("normalisation"), policy.observation_size);
+  if (PlansOnNetworks(policy)) {
+    policy.model.normalisation =
+        NormalisationFromValue(header.At("normalisation"), policy.observation_size);
+  }
   ReadNumbers(folder + "/policy.bin", policy);
   policy.motion = MotionFromValue(ReadYaml(folder + "/motion.yaml"), nullptr);
   return policy;

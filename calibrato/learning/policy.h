@@ -20,6 +20,8 @@ struct Policy {
   // Where it comes from.
   Task task = Task::kIntrinsic;
   std::string preset;
+  std::string stage;     ///< "learned", "fine-tuned"
+  std::string mistakes;  ///< Of the original, repeated on purpose: NamesOf().
   uint64_t seed = 0;
   int num_episodes = 0;
 
@@ -27,8 +29,10 @@ struct Policy {
   int observation_size = 0;
   NetworkOptions networks;
   PlanningOptions planning;
+  /// Of planners that plan on the two networks (ModelPlannerNames); else both are empty ...
   HistoryModel::State model;  ///< Without Adam's moments.
   ParticleMemory particle_memory;
+  std::string agent;  ///< ... and this is Agent::Bytes().
 
   /// The loops that the model chose in the test with the highest return, executed open loop (paper,
   /// appendix A: "directly extract the action sequence chosen by the MPC controller").
@@ -42,7 +46,7 @@ void WritePolicy(const Policy& policy, const std::string& folder);
 /// not of the same policy as the others.
 [[nodiscard]] Policy ReadPolicy(const std::string& folder);
 
-/// The networks, ready to predict.
+/// The networks, ready to predict. @pre its planner is one of ModelPlannerNames().
 [[nodiscard]] HistoryModel ModelOf(const Policy& policy);
 
 }  // namespace calibrato

@@ -24,11 +24,15 @@ Policy SomePolicy() {
   Policy policy;
   policy.task = Task::kExtrinsic;
   policy.preset = "paper";
+  policy.stage = "fine-tuned";
+  policy.mistakes = "masked-histories";
   policy.seed = 0xfffffffffffffff0U;
   policy.num_episodes = 12;
   policy.horizon = 2;
   policy.observation_size = 3;
   policy.networks.hidden_size = 8;
+  policy.networks.mask_histories = true;
+  policy.planning.planner = "icem";
   policy.planning.swarm.num_particles = 7;
   Rng rng(1);
   HistoryModel model(3, policy.networks, policy.planning.swarm.limit, rng);
@@ -49,6 +53,11 @@ TEST(Policy, ComesBackWhole) {
   const Policy after = ReadPolicy(folder);
   EXPECT_EQ(after.task, Task::kExtrinsic);
   EXPECT_EQ(after.preset, "paper");
+  EXPECT_EQ(after.stage, "fine-tuned");
+  EXPECT_EQ(after.mistakes, "masked-histories");
+  EXPECT_TRUE(after.networks.mask_histories);
+  EXPECT_EQ(after.planning.planner, "icem");
+  EXPECT_FALSE(after.planning.swarm.frozen);
   EXPECT_EQ(after.seed, before.seed);
   EXPECT_EQ(after.num_episodes, 12);
   EXPECT_EQ(after.horizon, 2);
@@ -74,13 +83,13 @@ TEST(ReadPolicy, NamesBothVersions) {
   const std::string folder = FreshFolder("version");
   WritePolicy(SomePolicy(), folder);
   std::string text = ReadFile(folder + "/policy.yaml");
-  const std::string now = "format_version: 1";
+  const std::string now = "format_version: 2";
   ASSERT_NE(text.find(now), std::string::npos);
   text.replace(text.find(now), now.size(), "format_version: 9");
   WriteFileAtomically(folder + "/policy.yaml", text);
   EXPECT_THAT([&] { (void)ReadPolicy(folder); },
               ThrowsMessage<InputError>(
-                  AllOf(HasSubstr("policy.yaml"), HasSubstr("version 9"), HasSubstr("version 1"))));
+                  AllOf(HasSubstr("policy.yaml"), HasSubstr("version 9"), HasSubstr("version 2"))));
 }
 
 TEST(ReadPolicy, RefusesWeightsThatAreDamagedOrOfAnotherNetwork) {

@@ -135,8 +135,9 @@ RecurrentNetwork::RecurrentNetwork(int pair_size, int action_size, int hidden_si
 }
 
 Tensor RecurrentNetwork::Encode(const Layers& layers, const SequenceBatch& batch) {
-  const Tensor from_input = Apply(layers.input, batch.pairs);
   const int64_t n = layers.recurrent.weight.size(1);
+  if (batch.pairs.size(0) == 0) return torch::zeros({batch.num_sequences, n});
+  const Tensor from_input = Apply(layers.input, batch.pairs);
   Tensor hidden = torch::zeros({0, n});
   int64_t first_row = 0;
   for (const int64_t num_active : batch.num_active) {
@@ -155,7 +156,8 @@ Tensor RecurrentNetwork::Encode(const Layers& layers, const SequenceBatch& batch
     first_row += num_active;
   }
   assert(first_row == batch.pairs.size(0));
-  return hidden;
+  const int64_t num_empty = batch.num_sequences - hidden.size(0);
+  return num_empty == 0 ? hidden : torch::cat({hidden, torch::zeros({num_empty, n})});
 }
 
 Tensor RecurrentNetwork::Advance(const Layers& layers, const Tensor& pair, const Tensor& hidden) {

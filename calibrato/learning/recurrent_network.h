@@ -14,6 +14,7 @@ namespace calibrato {
 /// Sequences of different lengths for one pass through the recurrent layer, the longest first, and
 /// aligned at their ends: at pair s all sequences that have begun are the first rows.
 struct SequenceBatch {
+  int64_t num_sequences = 0;        ///< Those without any pair, the last ones, included.
   std::vector<int64_t> num_active;  ///< How many sequences have begun at pair s; never falls.
   torch::Tensor pairs;  ///< Pair 0 of the active sequences, then pair 1 of those active then, ..
 };

@@ -36,6 +36,19 @@ void UpdateBest(const Eigen::MatrixXd& positions, const Eigen::VectorXd& values,
     result.best_position = positions.col(i);
     result.best_value = values[i];
   }
+  result.best_so_far.push_back(result.best_value);
+}
+
+// A tenth of the way, at most, to where the gradient leads.
+Eigen::MatrixXd FrozenVelocities(const Eigen::MatrixXd& positions, const Eigen::MatrixXd& gradients,
+                                 const SwarmOptions& options, Rng& rng) {
+  constexpr double kCognitiveWeight = 0.1;
+  const Eigen::MatrixXd led = (positions + options.gradient_weight * gradients)
+                                  .cwiseMax(-options.limit)
+                                  .cwiseMin(options.limit);
+  Eigen::MatrixXd velocities = led - positions;
+  for (double& v : velocities.reshaped()) v *= kCognitiveWeight * rng.Uniform();
+  return velocities;
 }
 
 }  // namespace
@@ -49,10 +62,14 @@ SwarmResult MaximiseBySwarm(const SearchObjective& objective, int dimension,
   for (int iteration = 0; iteration < options.num_iterations; ++iteration) {
     const SearchValues here = objective(positions, /*want_gradients=*/true);
     UpdateBest(positions, here.values, result);
-    velocities =
-        options.inertia_weight * velocities +
-        options.social_weight * (result.best_position.replicate(1, positions.cols()) - positions) +
-        options.gradient_weight * here.gradients;
+    if (options.frozen) {
+      velocities = FrozenVelocities(positions, here.gradients, options, rng);
+    } else {
+      velocities = options.inertia_weight * velocities +
+                   options.social_weight *
+                       (result.best_position.replicate(1, positions.cols()) - positions) +
+                   options.gradient_weight * here.gradients;
+    }
     positions = (positions + velocities).cwiseMax(-options.limit).cwiseMin(options.limit);
   }
   const SearchValues there = objective(positions, /*want_gradients=*/false);

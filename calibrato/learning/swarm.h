@@ -17,6 +17,9 @@ struct SwarmOptions {
   double gradient_weight = 1e-4;  ///< c2, >= 0; for gradients by unscaled coefficients.
   double inertia_weight = 1e-5;   ///< omega_0, >= 0.
   double limit = 0.015;           ///< Of every coordinate, > 0 (paper, appendix A).
+  /// The original's mistake (Mistake::kFrozenSwarm): v_i <- 0.1 U(0, 1) c2 gradient(P_i), without
+  /// inertia and social part. Particles stay where they are.
+  bool frozen = false;
 };
 
 struct SwarmResult {
@@ -24,6 +27,7 @@ struct SwarmResult {
   Eigen::VectorXd values;         ///< There, freshly evaluated; descending.
   Eigen::VectorXd best_position;  ///< G_best: the best of all positions that were evaluated.
   double best_value = 0.0;
+  std::vector<double> best_so_far;  ///< After each iteration and at the end: I + 1 values.
 };
 
 /// Moves a swarm by the paper's Eq. 7 and 8,

@@ -155,5 +155,43 @@ TEST(Swarm, RanksNanBelowAllElse) {
   EXPECT_TRUE(std::isnan(result.values[2]));
 }
 
+// A slope of 1 along every coordinate: the paper's step is the gradient weight, the original's less
+// than a tenth of it.
+TEST(MaximiseBySwarm, StandsNearlyStillWhereItIsFrozen) {
+  const SearchObjective slope = [](const Eigen::MatrixXd& positions, bool want_gradients) {
+    SearchValues values{positions.colwise().sum(), {}};
+    if (want_gradients) {
+      values.gradients = Eigen::MatrixXd::Ones(positions.rows(), positions.cols());
+    }
+    return values;
+  };
+  SwarmOptions options;
+  options.num_iterations = 5;
+  const Eigen::MatrixXd start = Eigen::MatrixXd::Zero(3, options.num_particles);
+  const auto way = [&](bool frozen) {
+    options.frozen = frozen;
+    Rng rng(1);
+    return MaximiseBySwarm(slope, 3, start, options, rng).positions.mean();
+  };
+  EXPECT_GT(way(false), 5.0 * options.gradient_weight * 0.99);
+  EXPECT_LT(way(true), 5.0 * options.gradient_weight * 0.1);
+  EXPECT_GT(way(true), 0.0);
+}
+
+TEST(MaximiseBySwarm, TellsHowItConverged) {
+  const SearchObjective height = [](const Eigen::MatrixXd& positions, bool want_gradients) {
+    SearchValues values{-positions.colwise().squaredNorm().transpose(), {}};
+    if (want_gradients) values.gradients = -2.0 * positions;
+    return values;
+  };
+  SwarmOptions options;
+  options.gradient_weight = 0.1;
+  Rng rng(1);
+  const SwarmResult result = MaximiseBySwarm(height, 4, Eigen::MatrixXd(4, 0), options, rng);
+  ASSERT_EQ(result.best_so_far.size(), 6U);
+  for (size_t i = 1; i < 6; ++i) EXPECT_GT(result.best_so_far[i], result.best_so_far[i - 1]);
+  EXPECT_EQ(result.best_so_far.back(), result.best_value);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -1,22 +1,26 @@
 #include "calibrato/learning/trainer.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cmath>
 #include <cstdio>
+#include <deque>
 #include <filesystem>
-#include <fstream>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
 #include "calibrato/base/value.h"
+#include "calibrato/learning/agent.h"
 #include "calibrato/learning/checkpoint.h"
 #include "calibrato/learning/episode.h"
-#include "calibrato/learning/mpc.h"
-#include "calibrato/learning/networks.h"
 #include "calibrato/learning/policy.h"
+#include "calibrato/learning/training_log.h"
 
 namespace calibrato {
 namespace {
@@ -35,33 +39,6 @@ bool MakeFolder(const std::string& folder) {
   }
   return is_new;
 }
-
-// training.jsonl as it grows: seen by who watches, and complete in every checkpoint.
-class TrainingLog {
- public:
-  TrainingLog(const std::string& folder, std::string lines)
-      : path_(folder + "/training.jsonl"), lines_(std::move(lines)) {
-    WriteFileAtomically(path_, lines_);
-    file_.open(path_, std::ios::binary | std::ios::app);
-  }
-
-  void Append(const Value& line) {
-    const std::string text = ToJsonLine(line) + "\n";
-    lines_ += text;
-    file_ << text << std::flush;
-    if (!file_) {
-      throw InputError(
-          {"cannot write training log", path_, "", "free some space, then continue with --resume"});
-    }
-  }
-
-  [[nodiscard]] const std::string& lines() const { return lines_; }
-
- private:
-  std::string path_;
-  std::string lines_;
-  std::ofstream file_;
-};
 
 Checkpoint ReadCheckpoint(const std::string& folder) {
   const std::string path = CheckpointPath(folder);
@@ -98,30 +75,15 @@ void CheckSameCourse(const Checkpoint& checkpoint, const LearnOptions& options,
   }
 }
 
-void CheckSizes(const Checkpoint& checkpoint, const HistoryModel& model, int horizon,
-                const std::string& folder) {
-  const auto is_whole = [](const NetworkWeights& network, size_t size) {
-    return network.weights.size() == size && network.first_moment.size() == size &&
-           network.second_moment.size() == size;
-  };
-  bool fits = is_whole(checkpoint.model.dynamics, model.num_dynamics_weights()) &&
-              is_whole(checkpoint.model.reward, model.num_reward_weights()) &&
-              checkpoint.model.normalisation.observation_mean.size() == model.observation_size() &&
-              checkpoint.particle_memory.size() == static_cast<size_t>(horizon);
-  for (size_t t = 0; fits && t < checkpoint.particle_memory.size(); ++t) {
-    const auto steps_left = horizon - static_cast<Eigen::Index>(t);
-    fits = checkpoint.particle_memory[t].rows() == steps_left * LoopCoefficients::RowsAtCompileTime;
-  }
-  if (!fits) {
-    FailResume(folder, "it belongs to another environment (observation size or horizon)",
-               "learn again without --resume");
-  }
-}
-
 LearnOptions Resolved(LearnOptions options, const Checkpoint* checkpoint) {
   if (!options.num_warm_up_episodes) {
     options.num_warm_up_episodes =
         checkpoint != nullptr ? checkpoint->num_warm_up_episodes : NumWarmUpEpisodes(options);
+  }
+  if (checkpoint != nullptr && checkpoint->stage_episodes.size() == options.stages.size()) {
+    for (size_t i = 0; i + 1 < options.stages.size(); ++i) {
+      options.stages[i].num_episodes = checkpoint->stage_episodes[i];
+    }
   }
   CheckOptions(options);
   return options;
@@ -132,25 +94,20 @@ class Trainer {
   Trainer(const LearnOptions& options, Environment& environment, std::string folder,
           const Checkpoint* checkpoint)
       : options_(options),
-        environment_(environment),
+        environments_({&environment}),
+        horizon_(environment.horizon()),
         folder_(std::move(folder)),
         rng_(options.seed),
-        model_(MakeModel()),
+        agent_(MakeAgent(options, environment.observation_size(), environment.horizon(),
+                         rng_.Stream("weights"))),
         replay_memory_(static_cast<size_t>(options.replay_capacity)),
         log_(folder_, FirstLines(checkpoint)) {
-    for (int t = 0; t < environment_.horizon(); ++t) {
-      particle_memory_.emplace_back(
-          LoopCoefficients::RowsAtCompileTime * (environment_.horizon() - t), 0);
+    for (int i = 1; i < options_.round; ++i) {
+      clones_.push_back(environment.Clone());
+      environments_.push_back(clones_.back().get());
     }
     if (checkpoint != nullptr) {
-      num_episodes_done_ = checkpoint->num_episodes_done;
-      num_calibrations_ = checkpoint->num_calibrations;
-      best_return_ = checkpoint->best_return;
-      best_test_return_ = checkpoint->best_test_return;
-      best_test_actions_ = checkpoint->best_test_actions;
-      model_.Restore(checkpoint->model);
-      replay_memory_ = checkpoint->replay_memory;
-      particle_memory_ = checkpoint->particle_memory;
+      GoOnFrom(*checkpoint);
     } else {
       SaveCheckpoint();
     }
@@ -159,42 +116,93 @@ class Trainer {
   LearnResult Run(const std::atomic<bool>* interrupt) {
     Progress progress("learning", options_.num_episodes);
     progress.Advance(num_episodes_done_);
-    while (num_episodes_done_ < options_.num_episodes) {
+    while (true) {
       if (interrupt != nullptr && interrupt->load()) {
         SaveCheckpoint();
         return Ended(LearnTermination::kInterrupted, "interrupted after episode " +
                                                          std::to_string(num_episodes_done_) +
                                                          "; continue with --resume");
       }
-      // Before the next episode, not after the last: so it stands outside the checkpoint between,
-      // and a run that ends here and is continued later is the run that never ended.
-      if (num_episodes_done_ % options_.test_every == 0 &&
-          num_episodes_done_ > *options_.num_warm_up_episodes) {
-        const EpisodeRecord test = PlayTest();
-        if (test.divergence) return Diverged(*test.divergence);
-      }
-      const EpisodeRecord record = PlayNext();
-      if (record.divergence) return Diverged(*record.divergence);
-      progress.Advance(1, Remark(record));
-      if (num_episodes_done_ % options_.checkpoint_every == 0 ||
-          num_episodes_done_ == options_.num_episodes) {
-        SaveCheckpoint();
-      }
+      const bool is_last = num_episodes_done_ == options_.num_episodes;
+      const std::optional<std::string> divergence = is_last ? PlayTest() : PlayOn(&progress);
+      if (is_last && !divergence) return Finish();
+      if (!divergence) continue;
+      if (num_rollbacks_ >= options_.max_rollbacks) return Diverged(*divergence);
+      RollBack(*divergence);
     }
-    return Finish();
   }
 
  private:
-  HistoryModel MakeModel() const {
-    Rng rng = rng_.Stream("weights");
-    return {environment_.observation_size(), options_.networks, options_.planning.swarm.limit, rng};
+  // Checks first: nothing may be written over if the checkpoint is of no use.
+  std::string FirstLines(const Checkpoint* checkpoint) {
+    if (checkpoint == nullptr) return "";
+    if (!agent_->Restore(checkpoint->agent, CheckpointPath(folder_))) {
+      FailResume(folder_, "it belongs to another environment (observation size or horizon)",
+                 "learn again without --resume");
+    }
+    return checkpoint->training_jsonl;
   }
 
-  // Checks first: nothing may be written over if the checkpoint is of no use.
-  std::string FirstLines(const Checkpoint* checkpoint) const {
-    if (checkpoint == nullptr) return "";
-    CheckSizes(*checkpoint, model_, environment_.horizon(), folder_);
-    return checkpoint->training_jsonl;
+  // @pre agent_ was restored from it.
+  void GoOnFrom(const Checkpoint& checkpoint) {
+    num_episodes_done_ = checkpoint.num_episodes_done;
+    // What comes at the end of a stage comes again.
+    stage_ = StageOf(options_, std::max(0, num_episodes_done_ - 1));
+    num_calibrations_ = checkpoint.num_calibrations;
+    best_return_ = checkpoint.best_return;
+    best_test_return_ = checkpoint.best_test_return;
+    best_test_actions_ = checkpoint.best_test_actions;
+    num_rollbacks_ = checkpoint.num_rollbacks;
+    agent_->ScaleLearningRate(std::pow(kRollbackFactor, num_rollbacks_));
+    for (size_t i = 0; i < environments_.size(); ++i) {
+      environments_[i]->CarryOver(checkpoint.carried_over[static_cast<Eigen::Index>(i)]);
+    }
+    replay_memory_ = checkpoint.replay_memory;
+  }
+
+  void SaveCheckpoint() const {
+    Checkpoint checkpoint;
+    checkpoint.options = CourseOfTraining(options_);
+    for (size_t i = 0; i < options_.stages.size(); ++i) {
+      checkpoint.stage_episodes.push_back(FirstEpisode(options_, i + 1) -
+                                          FirstEpisode(options_, i));
+    }
+    checkpoint.num_warm_up_episodes = *options_.num_warm_up_episodes;
+    checkpoint.num_episodes_done = num_episodes_done_;
+    checkpoint.num_calibrations = num_calibrations_;
+    checkpoint.best_return = best_return_;
+    checkpoint.best_test_return = best_test_return_;
+    checkpoint.best_test_actions = best_test_actions_;
+    checkpoint.num_rollbacks = num_rollbacks_;
+    checkpoint.carried_over.resize(static_cast<Eigen::Index>(environments_.size()));
+    for (size_t i = 0; i < environments_.size(); ++i) {
+      checkpoint.carried_over[static_cast<Eigen::Index>(i)] = environments_[i]->carried_over();
+    }
+    checkpoint.agent = agent_->Bytes();
+    checkpoint.replay_memory = replay_memory_;
+    checkpoint.training_jsonl = log_.lines();
+    WriteFileAtomically(CheckpointPath(folder_), ToBytes(checkpoint));
+  }
+
+  // Back to the last checkpoint, to go on with smaller steps: episodes meet the same rigs and draws
+  // as before, and what the networks make of them differs.
+  void RollBack(const std::string& divergence) {
+    const int episode = num_episodes_done_ + 1;
+    const Checkpoint checkpoint = ReadCheckpoint(folder_);
+    [[maybe_unused]] const bool fits = agent_->Restore(checkpoint.agent, CheckpointPath(folder_));
+    assert(fits);
+    GoOnFrom(checkpoint);
+    ++num_rollbacks_;
+    const double factor = std::pow(kRollbackFactor, num_rollbacks_);
+    agent_->ScaleLearningRate(factor);
+    log_.Rewind(checkpoint.training_jsonl);
+    log_.Append(Value::Object()
+                    .Set("episode", num_episodes_done_)
+                    .Set("kind", "rollback")
+                    .Set("diverged_at_episode", episode)
+                    .Set("why", divergence)
+                    .Set("learning_rate", factor * options_.networks.learning_rate));
+    SaveCheckpoint();
   }
 
   static std::string Remark(const EpisodeRecord& record) {
@@ -207,70 +215,139 @@ class Trainer {
   void Account(const EpisodeRecord& record) {
     num_calibrations_ += static_cast<int64_t>(record.executed.size());
     best_return_ = std::max(best_return_, record.total_reward);
-    log_.Append(ToValue(record, num_episodes_done_));
+    log_.Append(ToValue(record, num_episodes_done_, options_.stages[stage_].name));
   }
 
-  Plan PlanStep(int step, const History& history, Exploration exploration, Rng& rng) const {
-    return PlanAction(model_, history, environment_.horizon() - step,
-                      particle_memory_[static_cast<size_t>(step)], options_.planning, exploration,
-                      rng);
+  bool IsWarmUp() const { return num_episodes_done_ < *options_.num_warm_up_episodes; }
+
+  // Whether a round ended at a test's turn or just before it. Tests come before the next round, not
+  // after the last: so they stand outside the checkpoint between, and a run that ends here and is
+  // continued later is the run that never ended.
+  bool IsTestDue() const {
+    return num_episodes_done_ > *options_.num_warm_up_episodes &&
+           num_episodes_done_ % options_.test_every < options_.round;
   }
 
-  // The next random or training episode (Algorithm 1, lines 3 and 5 to 18).
-  EpisodeRecord PlayNext() {
-    const auto index = static_cast<uint64_t>(num_episodes_done_);
-    const bool is_random = num_episodes_done_ < *options_.num_warm_up_episodes;
-    if (num_episodes_done_ == *options_.num_warm_up_episodes) {
-      model_.SetNormalisation(NormalisationOf(replay_memory_));
+  // The end of a stage, if it is due; a test, if it is due; the next round. @return A divergence.
+  std::optional<std::string> PlayOn(Progress* progress) {
+    if (num_episodes_done_ == FirstEpisode(options_, stage_ + 1)) {
+      if (auto divergence = PlayTest()) return divergence;
+      WriteStagePolicy("policy-" + options_.stages[stage_].name);
+      ++stage_;
+      replay_memory_ = ReplayMemory(replay_memory_.capacity());
+      best_test_actions_.resize(Eigen::NoChange, 0);
     }
-    Rng agent_rng = rng_.Stream("agent", index);
-    const auto draw = [&](int, const History&) {
-      Decision decision;
-      const double limit = options_.planning.swarm.limit;
-      for (double& coefficient : decision.action) coefficient = agent_rng.Uniform(-limit, limit);
-      return decision;
-    };
-    const auto learn_and_plan = [&](int step, const History& history) {
-      Decision decision;
-      decision.loss = model_.Train(replay_memory_, agent_rng);
-      Plan plan = PlanStep(step, history, Exploration::kTraining, agent_rng);
-      particle_memory_[static_cast<size_t>(step)] = std::move(plan.best);
-      decision.action = plan.action;
-      decision.predicted_return = plan.predicted_return;
-      return decision;
-    };
-    const auto store = [this](const Transition& transition) { replay_memory_.Add(transition); };
-    const Rng environment_rng = rng_.Stream("episode", index);
-    EpisodeRecord record =
-        is_random ? PlayEpisode(environment_, EpisodeKind::kRandom, environment_rng, draw, store)
-                  : PlayEpisode(environment_, EpisodeKind::kTraining, environment_rng,
-                                learn_and_plan, store);
-    if (!record.divergence) {
+    if (IsTestDue()) {
+      if (auto divergence = PlayTest()) return divergence;
+    }
+    const int before = num_episodes_done_;
+    if (auto divergence = PlayRound(progress)) return divergence;
+    const bool is_checkpoint_due =
+        before / options_.checkpoint_every != num_episodes_done_ / options_.checkpoint_every;
+    if (is_checkpoint_due || num_episodes_done_ == FirstEpisode(options_, stage_ + 1)) {
+      SaveCheckpoint();
+    }
+    return std::nullopt;
+  }
+
+  // One of the episodes that are played side by side.
+  struct Seat {
+    Seat(Environment& environment, EpisodeKind kind, const Rng& environment_rng, Rng agent)
+        : agent_rng(agent), episode(environment, kind, environment_rng) {}
+    Rng agent_rng;
+    Episode episode;
+    Decision decision;
+    std::optional<Transition> transition;
+  };
+
+  Decision DrawAction(Rng& rng) const {
+    Decision decision;
+    const double limit = options_.planning.swarm.limit;
+    for (double& coefficient : decision.action) coefficient = rng.Uniform(-limit, limit);
+    return decision;
+  }
+
+  // One step of all episodes (Algorithm 1, lines 7 to 17). @return A divergence.
+  std::optional<std::string> PlayStep(int step, bool is_random, std::deque<Seat>& seats) {
+    std::vector<std::optional<TrainingLoss>> losses(seats.size());
+    if (!is_random && replay_memory_.size() > 0) {
+      for (size_t i = 0; i < seats.size(); ++i) {
+        losses[i] = agent_->Train(replay_memory_, seats[i].agent_rng);
+      }
+    }
+    ParallelFor(seats.size(), [&](size_t i) {
+      Seat& seat = seats[i];
+      seat.decision = is_random ? DrawAction(seat.agent_rng)
+                                : agent_->Decide(step, seat.episode.history(),
+                                                 Exploration::kTraining, seat.agent_rng);
+      seat.decision.loss = losses[i];
+      seat.transition = seat.episode.Execute(seat.decision);
+    });
+    std::vector<Decision> decisions;
+    for (Seat& seat : seats) {
+      if (seat.episode.diverged()) return seat.episode.Record().divergence;
+      replay_memory_.Add(std::move(*seat.transition));
+      decisions.push_back(std::move(seat.decision));
+    }
+    if (!is_random) agent_->Remember(step, decisions);
+    return std::nullopt;
+  }
+
+  // The next random or training episodes (Algorithm 1, lines 3 and 5 to 18). @return A divergence.
+  std::optional<std::string> PlayRound(Progress* progress) {
+    const bool is_random = IsWarmUp();
+    if (num_episodes_done_ == *options_.num_warm_up_episodes) agent_->BeginTraining(replay_memory_);
+    const int end =
+        is_random ? std::min(*options_.num_warm_up_episodes, FirstEpisode(options_, stage_ + 1))
+                  : FirstEpisode(options_, stage_ + 1);
+    const int count = std::min(options_.round, end - num_episodes_done_);
+    std::deque<Seat> seats;
+    for (int i = 0; i < count; ++i) {
+      const auto index = static_cast<uint64_t>(num_episodes_done_ + i);
+      Environment& environment = *environments_[static_cast<size_t>(i)];
+      environment.SetConditions(options_.stages[stage_].training);
+      seats.emplace_back(environment, is_random ? EpisodeKind::kRandom : EpisodeKind::kTraining,
+                         rng_.Stream("episode", index), rng_.Stream("agent", index));
+      if (seats.back().episode.diverged()) return seats.back().episode.Record().divergence;
+    }
+    for (int step = 0; step < horizon_; ++step) {
+      if (auto divergence = PlayStep(step, is_random, seats)) return divergence;
+    }
+    for (const Seat& seat : seats) {
+      const EpisodeRecord record = seat.episode.Record();
       ++num_episodes_done_;
       Account(record);
+      progress->Advance(1, Remark(record));
     }
-    return record;
+    return std::nullopt;
   }
 
   // The rig and the noise of every test are the same, so that tests compare with each other.
-  EpisodeRecord PlayTest() {
+  // @return A divergence.
+  std::optional<std::string> PlayTest() {
     Rng agent_rng = rng_.Stream("test agent", static_cast<uint64_t>(num_episodes_done_));
-    const auto plan_best = [&](int step, const History& history) {
-      const Plan plan = PlanStep(step, history, Exploration::kTesting, agent_rng);
-      return Decision{plan.action, std::nullopt, plan.predicted_return};
-    };
-    EpisodeRecord record = PlayEpisode(environment_, EpisodeKind::kTest, rng_.Stream("test"),
-                                       plan_best, [](const Transition&) {});
-    if (!record.divergence) {
-      Account(record);
-      KeepIfBest(record);
+    Environment& environment = *environments_.front();
+    environment.SetConditions(options_.stages[stage_].test);
+    Episode episode(environment, EpisodeKind::kTest, rng_.Stream("test"));
+    for (int step = 0; step < horizon_ && !episode.diverged(); ++step) {
+      Decision decision = agent_->Decide(step, episode.history(), Exploration::kTesting, agent_rng);
+      (void)episode.Execute(decision);
+      if (options_.mistakes.contains(Mistake::kTestsRemembered)) {
+        agent_->Remember(step, {std::move(decision)});
+      }
     }
-    return record;
+    const EpisodeRecord record = episode.Record();
+    if (record.divergence) return record.divergence;
+    Account(record);
+    KeepIfBest(record);
+    return std::nullopt;
   }
 
   void KeepIfBest(const EpisodeRecord& test) {
     const bool is_first = best_test_actions_.cols() == 0;
-    if (test.executed.empty() || !(is_first || test.total_reward > best_test_return_)) return;
+    const bool is_best = is_first || test.total_reward > best_test_return_ ||
+                         options_.mistakes.contains(Mistake::kLastTest);
+    if (test.executed.empty() || !is_best) return;
     best_test_return_ = test.total_reward;
     best_test_actions_.resize(LoopCoefficients::RowsAtCompileTime,
                               static_cast<Eigen::Index>(test.executed.size()));
@@ -279,20 +356,31 @@ class Trainer {
     }
   }
 
-  void SaveCheckpoint() const {
-    Checkpoint checkpoint;
-    checkpoint.options = CourseOfTraining(options_);
-    checkpoint.num_warm_up_episodes = *options_.num_warm_up_episodes;
-    checkpoint.num_episodes_done = num_episodes_done_;
-    checkpoint.num_calibrations = num_calibrations_;
-    checkpoint.best_return = best_return_;
-    checkpoint.best_test_return = best_test_return_;
-    checkpoint.best_test_actions = best_test_actions_;
-    checkpoint.model = model_.state();
-    checkpoint.replay_memory = replay_memory_;
-    checkpoint.particle_memory = particle_memory_;
-    checkpoint.training_jsonl = log_.lines();
-    WriteFileAtomically(CheckpointPath(folder_), ToBytes(checkpoint));
+  // Its motion is what the agent chose in a test, as in the paper; of all tests of the stage, which
+  // meet the same rig and noise, the one with the highest return. The last is not the best: the
+  // swarm finds what the model overrates. Nothing where the carrier refused every action of every
+  // test.
+  void WriteStagePolicy(const std::string& name) const {
+    if (best_test_actions_.cols() == 0) return;
+    Policy policy;
+    policy.task = options_.task;
+    policy.preset = options_.preset;
+    policy.stage = options_.stages[stage_].name;
+    policy.mistakes = NamesOf(options_.mistakes);
+    policy.seed = options_.seed;
+    policy.num_episodes = num_episodes_done_;
+    policy.horizon = horizon_;
+    policy.observation_size = environments_.front()->observation_size();
+    policy.networks = options_.networks;
+    policy.planning = options_.planning;
+    if (auto model = agent_->model()) {
+      policy.model = std::move(model->networks);
+      policy.particle_memory = std::move(model->particle_memory);
+    } else {
+      policy.agent = agent_->Bytes();
+    }
+    policy.motion = BestTestMotion();
+    WritePolicy(policy, folder_ + "/" + name);
   }
 
   LearnResult Ended(LearnTermination termination, std::string text) const {
@@ -301,6 +389,7 @@ class Trainer {
     result.preset = options_.preset;
     result.num_episodes = num_episodes_done_;
     result.num_calibrations = num_calibrations_;
+    result.num_rollbacks = num_rollbacks_;
     result.best_return = best_return_;
     result.termination = termination;
     result.termination_text = std::move(text);
@@ -308,40 +397,28 @@ class Trainer {
   }
 
   LearnResult Diverged(const std::string& what) const {
+    const std::string tried =
+        num_rollbacks_ == 0
+            ? ""
+            : ", and again after each of " + std::to_string(num_rollbacks_) +
+                  " returns to the last checkpoint, the learning rate being halved each time";
     return Ended(LearnTermination::kDiverged,
                  "training diverged at episode " + std::to_string(num_episodes_done_ + 1) + ", " +
-                     what +
+                     what + tried +
                      ": the networks can't be used; try another seed or a smaller learning "
                      "rate");
   }
 
-  // The motion is what the model chose in a test, as in the paper; of all tests, which meet the
-  // same rig and noise, the one with the highest return. The last is not the best: the swarm finds
-  // what the model overrates.
-  LearnResult Finish() {
-    const EpisodeRecord test = PlayTest();
-    if (test.divergence) return Diverged(*test.divergence);
+  LearnResult Finish() const {
     if (best_test_actions_.cols() == 0) {
       return Ended(LearnTermination::kNothingExecuted,
                    "the carrier refused every action of every test: nothing was learned; try "
                    "more episodes");
     }
-    Policy policy;
-    policy.task = options_.task;
-    policy.preset = options_.preset;
-    policy.seed = options_.seed;
-    policy.num_episodes = num_episodes_done_;
-    policy.horizon = environment_.horizon();
-    policy.observation_size = environment_.observation_size();
-    policy.networks = options_.networks;
-    policy.planning = options_.planning;
-    policy.model = model_.state();
-    policy.particle_memory = particle_memory_;
-    policy.motion = BestTestMotion();
-    WritePolicy(policy, folder_ + "/policy");
+    WriteStagePolicy("policy");
     LearnResult result =
         Ended(LearnTermination::kDone, "done: " + std::to_string(num_episodes_done_) + " episodes");
-    result.motion = std::move(policy.motion);
+    result.motion = BestTestMotion();
     return result;
   }
 
@@ -353,7 +430,8 @@ class Trainer {
       motion.loops.push_back({ScaledAction(action), options_.loop_duration_s});
     }
     motion.provenance = Value::Object()
-                            .Set("method", "learned")
+                            .Set("method", options_.stages[stage_].name)
+                            .Set("planner", options_.planning.planner)
                             .Set("task", TaskName(options_.task))
                             .Set("preset", options_.preset)
                             .Set("seed", std::to_string(options_.seed))
@@ -361,16 +439,21 @@ class Trainer {
     return motion;
   }
 
+  static constexpr double kRollbackFactor = 0.5;
+
   const LearnOptions options_;
-  Environment& environment_;
+  std::vector<Environment*> environments_;  // As many as a round has episodes.
+  std::vector<std::unique_ptr<Environment>> clones_;
+  const int horizon_;
   const std::string folder_;
   const Rng rng_;
-  HistoryModel model_;
+  std::unique_ptr<Agent> agent_;
   ReplayMemory replay_memory_;
-  ParticleMemory particle_memory_;
   TrainingLog log_;
+  size_t stage_ = 0;
   int num_episodes_done_ = 0;
   int64_t num_calibrations_ = 0;
+  int num_rollbacks_ = 0;
   double best_return_ = -std::numeric_limits<double>::infinity();
   double best_test_return_ = 0.0;
   Eigen::MatrixXd best_test_actions_{LoopCoefficients::RowsAtCompileTime, 0};

@@ -14,7 +14,7 @@ namespace calibrato {
 enum class LearnTermination {
   kDone,             ///< All episodes; the policy is written.
   kInterrupted,      ///< On request; the checkpoint is written, no policy.
-  kDiverged,         ///< A number was not finite; the last checkpoint stands, no policy.
+  kDiverged,         ///< A number was not finite, again and again; the last checkpoint stands.
   kNothingExecuted,  ///< The carrier refused every action of every test: no motion, no policy.
 };
 [[nodiscard]] std::string LearnTerminationName(LearnTermination termination);  ///< "done", ..
@@ -25,7 +25,8 @@ struct LearnResult {
   int num_episodes = 0;          ///< Random and training episodes, without tests.
   int64_t num_calibrations = 0;  ///< One for each action that was executed, tests included.
   int64_t num_information_evaluations = 0;  ///< Candidate motions judged without calibrating.
-  double best_return = 0.0;                 ///< The highest of any episode, tests included.
+  int num_rollbacks = 0;     ///< How often it diverged and went back to its last checkpoint.
+  double best_return = 0.0;  ///< The highest of any episode, tests included.
   LearnTermination termination = LearnTermination::kDone;
   /// For people, one line: "training diverged at episode 37, dynamics loss not finite: ...".
   std::string termination_text;
@@ -34,22 +35,30 @@ struct LearnResult {
 
 /// Model-based heuristic reinforcement learning (paper, Algorithm 1).
 ///
-/// After some random episodes, every step of every episode trains both networks on the replay
-/// memory, plans, executes the first action of the plan and stores what came of it. An action that
+/// After some random episodes, every step of every episode trains the agent on the replay memory,
+/// plans, executes the first action of the plan and stores what came of it. An action that
 /// the carrier refuses is stored as well: the environment's penalty teaches to avoid it. A test
 /// episode, every so often and at the end, always meets the same rig and noise, takes the best
-/// particle, and leaves networks and memories as they are.
+/// particle, and leaves networks and memories as they are. Episodes are played in rounds
+/// (LearnOptions::round), and stages follow each other (LearnOptions::stages).
+///
+/// Where a number is not finite, training goes back to the last checkpoint and on with half the
+/// learning rate, and says so in a line of training.jsonl of kind "rollback".
 ///
 /// Writes into `folder`, which is made if it is missing:
 ///
 ///     training.jsonl  one line an episode, as it ends
-///     checkpoint.bin  the whole state, at the start, every few episodes and on interruption
-///     policy/         see policy.h, when done
+///     checkpoint.bin  the whole state, at the start, after every round and on interruption
+///     policy-NAME/    see policy.h, at the end of each stage but the last
+///     policy/         at the end of the last
 ///
-/// The same options give the same bytes in all of them, whether or not the run was interrupted,
-/// killed at any moment, and resumed. A finished run can be resumed with more episodes.
+/// The same options give the same bytes in all of them, for any number of threads, and whether or
+/// not the run was interrupted, killed at any moment, and resumed. A finished run can be resumed
+/// with more episodes: with rounds of one episode, or where its episodes fill whole rounds, that is
+/// the run that had been longer from the start.
 ///
-/// @param interrupt  May be null. Once true, the run stops after the running episode.
+/// @param environment  Of which further ones are cloned for rounds of several episodes.
+/// @param interrupt  May be null. Once true, the run stops after the running round.
 /// @throws InputError if an option is out of range, the folder can't be written, or the checkpoint
 ///     to resume from is missing, damaged, or of other options (which it names).
 [[nodiscard]] LearnResult Learn(const LearnOptions& options, Environment& environment,

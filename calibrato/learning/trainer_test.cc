@@ -12,7 +12,10 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
 #include "calibrato/base/value.h"
+#include "calibrato/learning/agent.h"
+#include "calibrato/learning/checkpoint.h"
 #include "calibrato/learning/known_environment.h"
 #include "calibrato/learning/policy.h"
 
@@ -351,6 +354,325 @@ TEST(Learn, StopsWhenTheNetworksDiverge) {
   EXPECT_EQ(result.termination, LearnTermination::kDiverged);
   EXPECT_THAT(result.termination_text, HasSubstr("diverged at episode 4, "));
   EXPECT_THAT(result.termination_text, HasSubstr("not finite"));
+}
+
+LearnOptions RoundsOfThree() {
+  LearnOptions options = ShortRun();
+  options.round = 3;
+  options.num_episodes = 15;
+  return options;
+}
+
+TEST(Rounds, GiveTheSameBytesForAnyNumberOfThreads) {
+  KnownEnvironment environment;
+  const std::string one = FreshFolder("one_thread");
+  const std::string two = FreshFolder("two_threads");
+  SetNumThreads(1);
+  (void)Learn(RoundsOfThree(), environment, one);
+  SetNumThreads(2);
+  (void)Learn(RoundsOfThree(), environment, two);
+  SetNumThreads(0);
+  ExpectSameFiles(one, two);
+}
+
+TEST(Rounds, EndTheSameWhenKilledOrInterruptedAndResumed) {
+  KnownEnvironment environment;
+  const std::string whole = FreshFolder("round_whole");
+  const LearnOptions options = RoundsOfThree();
+  (void)Learn(options, environment, whole);
+  // The watched environment is the first of each round.
+  for (const int reset : {2, 3, 5}) {
+    const std::string running = FreshFolder("round_running");
+    const std::string killed = FreshFolder("round_killed");
+    std::atomic<bool> interrupt = false;
+    WatchedEnvironment watched([&](int count) {
+      if (count != reset) return;
+      std::filesystem::copy(running, killed, std::filesystem::copy_options::recursive);
+      interrupt = true;
+    });
+    (void)Learn(options, watched, running, &interrupt);
+    for (const std::string& folder : {running, killed}) {
+      LearnOptions resumed = options;
+      resumed.resume = true;
+      EXPECT_EQ(Learn(resumed, environment, folder).termination, LearnTermination::kDone);
+      ExpectSameFiles(whole, folder);
+    }
+  }
+}
+
+TEST(Rounds, KillsLoseNoMoreThanTheRunningRound) {
+  const std::string folder = FreshFolder("round_lost");
+  LearnOptions options = RoundsOfThree();
+  options.checkpoint_every = 1;
+  int reset = 0;
+  WatchedEnvironment watched([&](int) {
+    // Episodes 0-2 at random, then rounds from 3, 6, 9, 12; tests in between and before the end.
+    if (++reset == 1) return;
+    const Checkpoint checkpoint =
+        CheckpointFromBytes(ReadFile(folder + "/checkpoint.bin"), "checkpoint.bin");
+    EXPECT_GE(checkpoint.num_episodes_done, 3 * ((reset - 1) / 2));
+  });
+  (void)Learn(options, watched, folder);
+  EXPECT_GT(reset, 5);
+}
+
+TEST(Rounds, FindGoodActionsToo) {
+  LearnOptions options;
+  options.num_episodes = 64;
+  options.round = 4;
+  options.networks.hidden_size = 32;
+  options.networks.learning_rate = 3e-3;
+  options.networks.action_jitter = 0.0;
+  KnownEnvironment environment;
+  const std::string folder = FreshFolder("round_better");
+  (void)Learn(options, environment, folder);
+  EXPECT_GT(LinesOf(folder).back().At("return").AsDouble(), 5.0);
+}
+
+// Rewards ten times as much once calibrations are on; keeps what it was told.
+class StagedEnvironment : public KnownEnvironment {
+ public:
+  void SetConditions(const EpisodeConditions& conditions) override { conditions_ = conditions; }
+  StepResult Step(const LoopCoefficients& action) override {
+    StepResult result = KnownEnvironment::Step(action);
+    const double iterations = conditions_.max_iterations.value_or(0);
+    result.terms.push_back({"iterations", "iterations", iterations, 1.0});
+    result.reward += iterations;
+    return result;
+  }
+
+ private:
+  EpisodeConditions conditions_;
+};
+
+LearnOptions TwoStages() {
+  LearnOptions options = ShortRun();
+  options.task = Task::kExtrinsic;
+  options.stages = PaperStages(Task::kExtrinsic, 13);
+  options.num_episodes = 13;
+  return options;
+}
+
+TEST(Stages, FollowEachOtherUnderTheirOwnConditions) {
+  StagedEnvironment environment;
+  const std::string folder = FreshFolder("stages");
+  (void)Learn(TwoStages(), environment, folder);
+  int num_learned = 0;
+  int num_fine_tuned = 0;
+  for (const Value& line : LinesOf(folder)) {
+    const bool is_first = line.At("stage").AsString() == "learned";
+    const bool is_test = line.At("kind").AsString() == "test";
+    const double iterations = is_first ? 0.0 : is_test ? 20.0 : 2.0;  // Two steps.
+    EXPECT_EQ(line.At("increments").At("iterations").AsDouble(), iterations);
+    if (is_test) continue;
+    ++(is_first ? num_learned : num_fine_tuned);
+  }
+  // 13 * 1000 / 1650 = 7.9
+  EXPECT_EQ(num_learned, 8);
+  EXPECT_EQ(num_fine_tuned, 5);
+  const Policy learned = ReadPolicy(folder + "/policy-learned");
+  const Policy fine_tuned = ReadPolicy(folder + "/policy");
+  EXPECT_EQ(learned.stage, "learned");
+  EXPECT_EQ(learned.num_episodes, 8);
+  EXPECT_EQ(learned.motion.provenance.At("method").AsString(), "learned");
+  EXPECT_EQ(fine_tuned.stage, "fine-tuned");
+  EXPECT_EQ(fine_tuned.num_episodes, 13);
+  EXPECT_EQ(fine_tuned.motion.provenance.At("method").AsString(), "fine-tuned");
+  // What is remembered is of the second stage alone: 5 episodes of two steps.
+  const Checkpoint checkpoint =
+      CheckpointFromBytes(ReadFile(folder + "/checkpoint.bin"), "checkpoint.bin");
+  EXPECT_EQ(checkpoint.replay_memory.size(), 10U);
+}
+
+TEST(Stages, EndTheSameWhenKilledAnywhereAndWhenContinued) {
+  StagedEnvironment environment;
+  const std::string whole = FreshFolder("stages_whole");
+  LearnOptions options = TwoStages();
+  options.checkpoint_every = 1;
+  (void)Learn(options, environment, whole);
+  const auto files = FilesOf(whole);
+  EXPECT_EQ(files.size(), 8U);
+  // A kill at the boundary, and in the first episode after it.
+  for (int done = 7; done <= 9; ++done) {
+    const std::string folder = FreshFolder("stages_killed");
+    const std::string killed = FreshFolder("stages_copy");
+    bool is_copied = false;
+    class Watched : public StagedEnvironment {
+     public:
+      explicit Watched(std::function<void()> on_reset) : on_reset_(std::move(on_reset)) {}
+      Eigen::VectorXd Reset(const Rng& rng) override {
+        on_reset_();
+        return StagedEnvironment::Reset(rng);
+      }
+
+     private:
+      std::function<void()> on_reset_;
+    };
+    Watched watched([&] {
+      const Checkpoint checkpoint =
+          CheckpointFromBytes(ReadFile(folder + "/checkpoint.bin"), "checkpoint.bin");
+      if (is_copied || checkpoint.num_episodes_done != done) return;
+      is_copied = true;
+      std::filesystem::copy(folder, killed, std::filesystem::copy_options::recursive);
+    });
+    (void)Learn(options, watched, folder);
+    LearnOptions resumed = options;
+    resumed.resume = true;
+    (void)Learn(resumed, environment, killed);
+    EXPECT_EQ(FilesOf(killed), files) << done;
+  }
+  // Continued, the first stage stays as long as it was.
+  LearnOptions longer = options;
+  longer.num_episodes = 20;
+  longer.stages = PaperStages(Task::kExtrinsic, 20);
+  longer.resume = true;
+  (void)Learn(longer, environment, whole);
+  EXPECT_EQ(ReadPolicy(whole + "/policy-learned").num_episodes, 8);
+  EXPECT_EQ(ReadPolicy(whole + "/policy").num_episodes, 20);
+  const std::string at_once = FreshFolder("stages_at_once");
+  longer.stages.front().num_episodes = 8;
+  longer.resume = false;
+  (void)Learn(longer, environment, at_once);
+  EXPECT_EQ(FilesOf(at_once), FilesOf(whole));
+}
+
+// One reward, the thirteenth, is infinite; never again.
+class StumblingEnvironment : public KnownEnvironment {
+ public:
+  StepResult Step(const LoopCoefficients& action) override {
+    StepResult result = KnownEnvironment::Step(action);
+    if (++num_steps_ == 13) result.reward = std::numeric_limits<double>::infinity();
+    return result;
+  }
+
+ private:
+  int num_steps_ = 0;
+};
+
+TEST(Learn, GoesBackToItsCheckpointAndOnWithSmallerStepsWhereItDiverged) {
+  StumblingEnvironment environment;
+  const std::string folder = FreshFolder("rolled_back");
+  const LearnResult result = Learn(ShortRun(), environment, folder);
+  EXPECT_EQ(result.termination, LearnTermination::kDone);
+  EXPECT_EQ(result.num_episodes, 14);
+  EXPECT_EQ(result.num_rollbacks, 1);
+  int num_rollbacks = 0;
+  int last_episode = 0;
+  for (const Value& line : LinesOf(folder)) {
+    const auto episode = static_cast<int>(line.At("episode").AsInt());
+    if (line.At("kind").AsString() == "rollback") {
+      ++num_rollbacks;
+      // The checkpoint of episode 5; twelve steps are episodes 1 to 4, the test and episode 5.
+      EXPECT_EQ(episode, 5);
+      EXPECT_EQ(line.At("diverged_at_episode").AsInt(), 6);
+      EXPECT_EQ(line.At("why").AsString(), "reward not finite");
+      EXPECT_EQ(line.At("learning_rate").AsDouble(), 0.5e-4);
+    }
+    EXPECT_GE(episode, last_episode);
+    last_episode = episode;
+  }
+  EXPECT_EQ(num_rollbacks, 1);
+  // A resumed run keeps the smaller steps: its continuation is that of the run that went on.
+  LearnOptions longer = ShortRun();
+  longer.num_episodes = 18;
+  longer.resume = true;
+  KnownEnvironment sound;
+  (void)Learn(longer, sound, folder);
+  StumblingEnvironment again;
+  const std::string at_once = FreshFolder("rolled_back_at_once");
+  longer.resume = false;
+  (void)Learn(longer, again, at_once);
+  ExpectSameFiles(folder, at_once);
+}
+
+TEST(Learn, FindsGoodActionsWithEveryPlannerThatHasAModelOrALibrary) {
+  for (const std::string& planner : AgentNames()) {
+    SCOPED_TRACE(planner);
+    LearnOptions options;
+    options.num_episodes = 36;
+    options.networks.hidden_size = 16;
+    options.networks.learning_rate = 5e-3;
+    options.networks.action_jitter = 0.0;
+    options.planning.planner = planner;
+    options.test_every = 40;
+    KnownEnvironment environment;
+    const std::string folder = FreshFolder("planner_" + planner);
+    const LearnResult result = Learn(options, environment, folder);
+    ASSERT_EQ(result.termination, LearnTermination::kDone);
+    EXPECT_EQ(ReadPolicy(folder + "/policy").planning.planner, planner);
+    // Without a model or a library 36 episodes teach nothing: sac_agent_test.cc has its learning.
+    if (planner == "sac") continue;
+    // 1.8 for random actions, with a standard deviation of about 0.3.
+    EXPECT_GT(LinesOf(folder).back().At("return").AsDouble(), 2.8);
+  }
+}
+
+// A search on the networks, and the two agents that have none.
+TEST(Learn, GoesOnAsIfItHadNeverStoppedWithEveryAgent) {
+  for (const std::string planner : {"icem", "q-library", "sac"}) {
+    SCOPED_TRACE(planner);
+    LearnOptions options = ShortRun();
+    options.planning.planner = planner;
+    KnownEnvironment environment;
+    const std::string at_once = FreshFolder("agent_at_once");
+    (void)Learn(options, environment, at_once);
+    const std::string folder = FreshFolder("agent_continued");
+    options.num_episodes = 9;
+    (void)Learn(options, environment, folder);
+    options.num_episodes = 14;
+    options.resume = true;
+    (void)Learn(options, environment, folder);
+    ExpectSameFiles(at_once, folder);
+  }
+}
+
+TEST(Learn, LogsWhatTheNetworksExpectedAndHowTheSearchConverged) {
+  KnownEnvironment environment;
+  const std::string folder = FreshFolder("expected");
+  (void)Learn(ShortRun(), environment, folder);
+  for (const Value& line : LinesOf(folder)) {
+    const bool is_random = line.At("kind").AsString() == "random";
+    EXPECT_EQ(line.Find("reward_prediction_error") == nullptr, is_random);
+    EXPECT_EQ(line.Find("observation_prediction_error") == nullptr, is_random);
+    EXPECT_EQ(line.Find("best_so_far") == nullptr, is_random);
+    if (is_random) continue;
+    EXPECT_GT(line.At("reward_prediction_error").AsDouble(), 0.0);
+    EXPECT_GT(line.At("observation_prediction_error").AsDouble(), 0.0);
+    EXPECT_EQ(line.At("best_so_far").size(), 6U);  // Before five iterations, and after.
+    EXPECT_GE(line.At("best_so_far").AsDoubles(6).back(),
+              line.At("best_so_far").AsDoubles(6).front());
+  }
+}
+
+TEST(Mistakes, TestsRememberedChangeWhatIsTrained) {
+  KnownEnvironment environment;
+  const std::string right = FreshFolder("tests_right");
+  const std::string wrong = FreshFolder("tests_wrong");
+  LearnOptions options = ShortRun();
+  (void)Learn(options, environment, right);
+  options.mistakes = {Mistake::kTestsRemembered};
+  (void)Learn(options, environment, wrong);
+  EXPECT_NE(ReadFile(right + "/policy/policy.bin"), ReadFile(wrong + "/policy/policy.bin"));
+  EXPECT_EQ(ReadPolicy(wrong + "/policy").mistakes, "tests-remembered");
+}
+
+TEST(Mistakes, LastTestGivesTheMotionOfTheLastTestThoughItIsWorse) {
+  KnownEnvironment environment;
+  const std::string folder = FreshFolder("last_test");
+  LearnOptions options = ShortRun();
+  options.test_every = 1;
+  options.mistakes = {Mistake::kLastTest};
+  (void)Learn(options, environment, folder);
+  const std::vector<Value> lines = LinesOf(folder);
+  EXPECT_NEAR(PathLength(ReadPolicy(folder + "/policy").motion),
+              lines.back().At("path_length_m").AsDouble(), 1e-9);
+  double best_return = -1e9;
+  for (const Value& line : lines) {
+    if (line.At("kind").AsString() == "test") {
+      best_return = std::max(best_return, line.At("return").AsDouble());
+    }
+  }
+  EXPECT_GT(best_return, lines.back().At("return").AsDouble());
 }
 
 }  // namespace

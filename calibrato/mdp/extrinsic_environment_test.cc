@@ -19,8 +19,8 @@ LoopCoefficients RandomAction(Rng& rng) {
 }
 
 double Term(const StepResult& step, const std::string& name) {
-  for (const auto& [term, value] : step.terms) {
-    if (term == name) return value;
+  for (const RewardTerm& term : step.terms) {
+    if (term.name == name) return term.value();
   }
   ADD_FAILURE() << "no term " << name;
   return 0.0;
@@ -73,7 +73,7 @@ TEST(ExtrinsicEnvironment, TheRewardIsTheSumOfItsTermsAndTheyAreTheirIncrements)
     const LoopCoefficients action = RandomAction(rng);
     const StepResult result = environment.Step(action);
     double sum = 0.0;
-    for (const auto& [name, value] : result.terms) sum += value;
+    for (const RewardTerm& term : result.terms) sum += term.weight * term.increment;
     EXPECT_NEAR(result.reward, sum, 1e-12);
     EXPECT_NEAR(Term(result, "relative_error"), error - environment.relative_error(), 1e-12);
     EXPECT_NEAR(Term(result, "path_length"), -PathLength(ScaledAction(action)), 1e-12);
@@ -122,9 +122,8 @@ TEST(ExtrinsicEnvironment, ARefusedActionLeavesTheStateAndCosts) {
 }
 
 TEST(ExtrinsicEnvironment, TheFirstStageHasEmpiricalAndPathTermsAlone) {
-  ExtrinsicTask task;
-  task.calibrate = false;
-  ExtrinsicEnvironment environment(task);
+  ExtrinsicEnvironment environment({});
+  environment.SetConditions({.calibrate = false, .max_iterations = {}});
   Rng rng(5);
   const Eigen::VectorXd before = environment.Reset(rng.Stream("episode"));
   const StepResult step = environment.Step(RandomAction(rng));
@@ -144,6 +143,112 @@ TEST(ExtrinsicEnvironment, IsTheSameForTheSameStream) {
   (void)b.Reset(Rng(7));
   const LoopCoefficients action = RandomAction(actions);
   EXPECT_EQ(a.Step(action).observation, b.Step(action).observation);
+}
+
+// One iteration of the solver leaves more of the error than a whole solve.
+TEST(ExtrinsicEnvironment, SolvesAsFarAsTheConditionsAllow) {
+  ExtrinsicEnvironment one({});
+  ExtrinsicEnvironment all({});
+  one.SetConditions({.calibrate = true, .max_iterations = 1});
+  Rng actions(6);
+  (void)one.Reset(Rng(7));
+  (void)all.Reset(Rng(7));
+  const LoopCoefficients action = RandomAction(actions);
+  EXPECT_NE(one.Step(action).observation, all.Step(action).observation);
+}
+
+// The weights of appendix C: the reward knows nothing of the truth.
+TEST(ExtrinsicEnvironment, TheReprojectionVariantDoesNotLookAtTheTruth) {
+  ExtrinsicTask task;
+  task.weights.relative_error = 0.0;
+  task.weights.reprojection = 2.0;
+  ExtrinsicEnvironment environment(task);
+  Rng rng(8);
+  (void)environment.Reset(rng.Stream("episode"));
+  const StepResult step = environment.Step(RandomAction(rng));
+  EXPECT_EQ(Term(step, "relative_error"), 0.0);
+  // From 1 px before any data to the corners' noise of 0.1 px in u and in v.
+  EXPECT_NEAR(Term(step, "reprojection"), 2.0 * (1.0 - 0.1 * std::sqrt(2.0)), 0.06);
+}
+
+StepResult FirstStep(const Mistakes& mistakes, const EpisodeConditions& conditions = {}) {
+  ExtrinsicTask task;
+  task.mistakes = mistakes;
+  ExtrinsicEnvironment environment(task);
+  environment.SetConditions(conditions);
+  Rng rng(9);
+  (void)environment.Reset(rng.Stream("episode"));
+  return environment.Step(RandomAction(rng));
+}
+
+TEST(ExtrinsicMistakes, ConstantAccuracyRewardsAnyMotionAlike) {
+  ExtrinsicTask task;
+  task.mistakes = {Mistake::kConstantAccuracy};
+  ExtrinsicEnvironment environment(task);
+  Rng rng(10);
+  const Eigen::VectorXd start = environment.Reset(rng.Stream("episode"));
+  for (int step = 0; step < environment.horizon(); ++step) {
+    const StepResult result = environment.Step(RandomAction(rng));
+    const bool last = step + 1 == environment.horizon();
+    EXPECT_NEAR(Term(result, "relative_error"), last ? 1.0 : 0.0, 0.01);
+    EXPECT_EQ(result.observation == start, !last);
+  }
+}
+
+TEST(ExtrinsicMistakes, DurationEntropyIsTheLogarithmOfTheNumberOfSamples) {
+  // 5 s at 200 Hz: 0.4 ln 1000 / ln 2.73, though nothing moves.
+  ExtrinsicTask task;
+  task.mistakes = {Mistake::kDurationEntropy};
+  ExtrinsicEnvironment environment(task);
+  (void)environment.Reset(Rng(9));
+  EXPECT_NEAR(Term(environment.Step(LoopCoefficients::Zero()), "imu_entropy"), 2.7513, 1e-4);
+  EXPECT_GT(Term(FirstStep({}), "imu_entropy"), 5.0);
+}
+
+TEST(ExtrinsicMistakes, ConditionalCovarianceIsSmallerThanTheMarginalOne) {
+  const StepResult right = FirstStep({});
+  const StepResult wrong = FirstStep({Mistake::kConditionalCovariance});
+  const double conditional = -Term(wrong, "information") / 1e7;
+  const auto block = [&](int first) {
+    return (2.0 * right.observation.segment(6 + first, 6).array()).exp().sum() * 1e-6;
+  };
+  EXPECT_GT(conditional, 0.0);
+  EXPECT_LT(conditional, 0.5 * block(0));  // rad^2 + m^2 both
+  EXPECT_EQ(right.observation, wrong.observation);
+}
+
+TEST(ExtrinsicMistakes, SwappedNoiseChangesTheEstimateAndWhatItClaims) {
+  const StepResult right = FirstStep({});
+  const StepResult wrong = FirstStep({Mistake::kSwappedNoise});
+  // The accelerometer is believed to be 14 times worse: the worst direction is claimed to be wider.
+  EXPECT_GT(wrong.observation(11), right.observation(11) + 0.5);
+  EXPECT_EQ(Term(right, "imu_entropy"), Term(wrong, "imu_entropy"));
+}
+
+TEST(ExtrinsicMistakes, TheWrongTruthIsUpToThreeMillimetresOff) {
+  for (const Eigen::Vector3d& rpy :
+       {Eigen::Vector3d(0.1, 0.0, 0.0), Eigen::Vector3d(0.0, 0.0, -0.1)}) {
+    const Rigid3 truth{RotationFromRpy(rpy) * PriorMeanExtrinsics().R, {0.06, 0.0, -0.1}};
+    const Rigid3 wrong = OriginalTruth(truth);
+    EXPECT_EQ(wrong.R, truth.R);
+    // The slide is along x of the camera: turned about it, nothing; about z, 0.03 m * 0.1 rad.
+    EXPECT_NEAR((wrong.t - truth.t).norm(), std::abs(rpy.z()) * 0.03, 1e-5);
+  }
+  EXPECT_NE(Term(FirstStep({Mistake::kWrongTruth}), "relative_error"),
+            Term(FirstStep({}), "relative_error"));
+}
+
+TEST(ExtrinsicMistakes, SilentRefusalsCostNothingAndLookLikeAnOutcome) {
+  ExtrinsicTask task;
+  task.mistakes = {Mistake::kSilentRefusals};
+  ExtrinsicEnvironment environment(task);
+  (void)environment.Reset(Rng(1));
+  LoopCoefficients too_far = LoopCoefficients::Zero();
+  too_far(1) = 0.5;
+  const StepResult refused = environment.Step(too_far);
+  EXPECT_FALSE(refused.executed);
+  EXPECT_EQ(refused.reward, 0.0);
+  EXPECT_EQ(refused.observation, Eigen::VectorXd::Zero(12));
 }
 
 }  // namespace

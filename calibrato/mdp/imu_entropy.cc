@@ -38,4 +38,10 @@ double ImuEntropy(const ImuStream& stream) {
   return entropy;
 }
 
+double OriginalImuEntropy(size_t num_samples) {
+  constexpr size_t kBuffer = 2000;
+  if (num_samples == 0) return 0.0;
+  return 0.4 * std::log(static_cast<double>(std::min(num_samples, kBuffer))) / std::log(2.73);
+}
+
 }  // namespace calibrato

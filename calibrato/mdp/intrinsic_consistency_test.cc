@@ -11,6 +11,7 @@
 #include "calibrato/base/parallel.h"
 #include "calibrato/calibration/camera_calibration.h"
 #include "calibrato/mdp/intrinsic_environment.h"
+#include "calibrato/simulation/fast_simulation.h"
 
 namespace calibrato {
 namespace {

@@ -1,40 +1,19 @@
 #include "calibrato/mdp/intrinsic_environment.h"
 
 #include <cassert>
+#include <utility>
+
+#include "calibrato/mdp/recorded_loop.h"
 
 namespace calibrato {
 namespace {
 
-constexpr double kBorderPx = 8.0;
-constexpr double kBonusError = 0.01;     // [-]
-constexpr double kMaxFocalSigma = 0.05;  // sigma(f) / f [-]
-
-// Weak calibrations are the rule after the first loop; a hundred iterations on them are wasted.
-constexpr int kMaxIterations = 50;
-
-bool IsDetermined(const CameraCalibration& calibration) {
-  if (calibration.termination != Termination::kConverged) return false;
-  const Eigen::Vector2d f = calibration.model->focal_and_centre().head<2>();
-  const Eigen::Vector2d sigma = calibration.covariance.diagonal().head<2>().cwiseSqrt();
-  return (sigma.array() <= kMaxFocalSigma * f.array()).all();
-}
+constexpr double kBonusError = 0.01;  // [-]
 
 }  // namespace
 
-std::vector<BoardView> FramesThatCount(std::vector<BoardView> views, Resolution resolution) {
-  const Eigen::Array2d high(resolution.width - 1 - kBorderPx, resolution.height - 1 - kBorderPx);
-  std::erase_if(views, [&](const BoardView& view) {
-    return !((view.pixels.array() >= kBorderPx).all() &&
-             (view.pixels.rowwise().maxCoeff().array() <= high).all());
-  });
-  return views;
-}
-
-double RelativeIntrinsicError(const Eigen::Vector4d& estimate, const Eigen::Vector4d& truth) {
-  return (estimate - truth).norm() / truth.norm();
-}
-
 Eigen::VectorXd IntrinsicEnvironment::Reset(const Rng& rng) {
+  if (num_steps_ > 0) carried_coverage_ = coverage_.sum();
   if (task_.fixed_rig) {
     rig_ = *task_.fixed_rig;
   } else {
@@ -46,11 +25,35 @@ Eigen::VectorXd IntrinsicEnvironment::Reset(const Rng& rng) {
   now_ = Time();
   views_.clear();
   coverage_ = {};
-  estimate_ = PriorMeanIntrinsics();
-  relative_error_ =
-      RelativeIntrinsicError(estimate_, rig_.cameras.front().model.focal_and_centre());
+  status_ = PriorIntrinsicStatus(rig_.cameras.front(), task_.criterion);
   bonus_paid_ = false;
-  return Observation();
+  return ObservationOf(status_, coverage_);
+}
+
+void IntrinsicEnvironment::Record(const TimedMotion& motion, const Rng& noise) {
+  const Camera& camera = rig_.cameras.front();
+  RecordedLoop loop = RecordLoop(rig_, motion, task_.fidelity, now_, noise, /*want_imu=*/false);
+  now_ = now_ + Duration::FromSeconds(motion.duration_s());
+  for (BoardView& view : FramesThatCount(std::move(loop.views), camera.resolution, rig_.board)) {
+    views_.push_back(std::move(view));
+  }
+  coverage_ = CoverageOf(views_, camera.resolution);
+  const bool lost = task_.mistakes.contains(Mistake::kLostCoverage) && !loop.last_frame_has_board;
+  if (lost) coverage_ = {};
+  const bool too_early =
+      task_.mistakes.contains(Mistake::kConstantAccuracy) && num_steps_ < horizon();
+  if (!conditions_.calibrate || too_early) return;
+  status_ = CalibrateIntrinsics(views_, camera, task_.criterion,
+                                conditions_.max_iterations.value_or(task_.max_iterations));
+}
+
+double IntrinsicEnvironment::RewardedError() const {
+  const bool constant = task_.mistakes.contains(Mistake::kConstantAccuracy);
+  return constant && num_steps_ < horizon() ? 1.0 : status_.relative_error;
+}
+
+double IntrinsicEnvironment::carried_over() const {
+  return num_steps_ > 0 ? coverage_.sum() : carried_coverage_;
 }
 
 StepResult IntrinsicEnvironment::Step(const LoopCoefficients& action) {
@@ -60,59 +63,39 @@ StepResult IntrinsicEnvironment::Step(const LoopCoefficients& action) {
   motion.carrier = task_.carrier;
   motion.loops.push_back({ScaledAction(action), 5.0});
   // Each loop has noise of its own, whatever became of the loops before it.
-  Rng loop_noise = noise_.Stream("loop", static_cast<uint64_t>(num_steps_));
+  const Rng loop_noise = noise_.Stream("loop", static_cast<uint64_t>(num_steps_));
+  const IntrinsicStatus before = status_;
+  const double error_before = RewardedError();
+  const bool carries = num_steps_ == 0 && task_.mistakes.contains(Mistake::kCarriedCoverage);
+  const double coverage_before = carries ? carried_coverage_ : coverage_.sum();
   ++num_steps_;
 
   const auto planned = PlanMotion(motion, rig_);
-  double coverage_gain = 0.0;
-  double error_fall = 0.0;
-  double path_length = 0.0;
-  double bonus = 0.0;
   const auto* timed = std::get_if<TimedMotion>(&planned);
-  if (timed != nullptr) {
-    const Camera& camera = rig_.cameras.front();
-    SimulatedFrames frames = SimulateFrames(rig_, *timed, now_, loop_noise);
-    now_ = now_ + Duration::FromSeconds(timed->duration_s());
-    for (BoardView& view : FramesThatCount(std::move(frames.views), camera.resolution)) {
-      views_.push_back(std::move(view));
-    }
-    const double coverage_before = coverage_.sum();
-    const double error_before = relative_error_;
-    CameraProblem problem;
-    problem.model = kIntrinsicTaskModel;
-    problem.resolution = camera.resolution;
-    problem.views = views_;
-    const CameraCalibration calibration = CalibrateCamera(problem, kMaxIterations);
-    coverage_ = calibration.coverage;
-    estimate_ =
-        IsDetermined(calibration) ? calibration.model->focal_and_centre() : PriorMeanIntrinsics();
-    relative_error_ = RelativeIntrinsicError(estimate_, camera.model.focal_and_centre());
-    coverage_gain = coverage_.sum() - coverage_before;
-    error_fall = error_before - relative_error_;
-    path_length = PathLength(motion);
-    if (!bonus_paid_ && relative_error_ < kBonusError) {
-      bonus_paid_ = true;
-      bonus = weights.accuracy_bonus;
-    }
-  }
-
   StepResult result;
-  result.observation = Observation();
   result.executed = timed != nullptr;
-  result.terms = {{"coverage", weights.coverage * coverage_gain},
-                  {"relative_error", weights.relative_error * error_fall},
-                  {"path_length", -weights.path_length * path_length},
-                  {"accuracy_bonus", bonus},
-                  {"refusal", result.executed ? 0.0 : weights.refusal}};
-  for (const auto& [name, value] : result.terms) result.reward += value;
+  if (timed == nullptr && task_.mistakes.contains(Mistake::kSilentRefusals)) {
+    result.observation = Eigen::VectorXd::Zero(observation_size());
+    return result;
+  }
+  if (timed != nullptr) Record(*timed, loop_noise);
+  const double error = RewardedError();
+  const bool bonus = timed != nullptr && !bonus_paid_ && error < kBonusError;
+  bonus_paid_ = bonus_paid_ || bonus;
+  const double path_length = timed != nullptr ? PathLength(motion) : 0.0;
+  result.observation = ObservationOf(status_, coverage_);
+  result.terms = {
+      {"coverage", "coverage", coverage_.sum() - coverage_before, weights.coverage},
+      {"information", "information_nat", status_.information - before.information,
+       weights.information},
+      {"relative_error", "relative_error", error_before - error, weights.relative_error},
+      {"reprojection", "reprojection_px", before.reprojection_px - status_.reprojection_px,
+       weights.reprojection},
+      {"path_length", "path_length_m", path_length, -weights.path_length},
+      {"accuracy_bonus", "accuracy_bonus", bonus ? 1.0 : 0.0, weights.accuracy_bonus},
+      {"refusal", "refusals", timed == nullptr ? 1.0 : 0.0, weights.refusal}};
+  result.reward = SumOf(result.terms);
   return result;
-}
-
-Eigen::VectorXd IntrinsicEnvironment::Observation() const {
-  Eigen::VectorXd observation(8);
-  observation << estimate_.cwiseQuotient(PriorMeanIntrinsics()), coverage_.x, coverage_.y,
-      coverage_.size, coverage_.skew;
-  return observation;
 }
 
 }  // namespace calibrato

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
-#include "calibrato/calibration/camera_calibration.h"
+#include "calibrato/mdp/calibration_status.h"
 #include "calibrato/mdp/environment.h"
+#include "calibrato/mdp/frames_that_count.h"
 #include "calibrato/motion/carrier.h"
-#include "calibrato/simulation/fast_simulation.h"
+#include "calibrato/simulation/fidelity.h"
 #include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
@@ -14,8 +16,13 @@ namespace calibrato {
 /// Weights of Eq. 3 for the intrinsic task (paper, Table 5), and the two decisions that the paper
 /// leaves open (docs/differences.md).
 struct IntrinsicRewardWeights {
-  double coverage = 1.0;        ///< eta_1, of the sum of the four coverages [-].
+  double coverage = 1.0;  ///< eta_1, of the sum of the four coverages [-].
+  double information =
+      0.0;  ///< eta_2 [1/nat], of IntrinsicInformationStatus; the paper has none in this task.
   double relative_error = 1.0;  ///< eta_3, of the fall of the relative error [-].
+  /// eta_3', of the fall of the reprojection error [1/px], in place of the relative error where the
+  /// truth is unknown (appendix C): 0 or, with relative_error and accuracy_bonus 0, 2.
+  double reprojection = 0.0;
   double path_length = 0.2;     ///< eta_4 [1/m]
   double accuracy_bonus = 5.0;  ///< Once, when the relative error first falls below 1 %.
   double refusal = -1.0;        ///< For an action that the carrier can't make.
@@ -24,45 +31,50 @@ struct IntrinsicRewardWeights {
 /// Where the episodes of the intrinsic task take place.
 struct IntrinsicTask {
   Carrier carrier = Carrier::kFree;
+  Fidelity fidelity = Fidelity::kFast;
   RigDistribution rigs = RigDistribution::kPaper;
   std::optional<Rig> fixed_rig;  ///< Every episode with this one instead.
   IntrinsicRewardWeights weights;
+  DesignCriterion criterion = DesignCriterion::kA;
+  /// Of the solver. Weak calibrations are the rule after the first loop; a hundred iterations on
+  /// them are wasted.
+  int max_iterations = 50;
+  Mistakes mistakes;
 };
-
-/// The camera model that the intrinsic task estimates: OpenCV's default, as in the paper.
-inline constexpr const char* kIntrinsicTaskModel = "pinhole-radtan5";
-
-/// Frames that count in the intrinsic task: every corner at least 8 px inside the image.
-[[nodiscard]] std::vector<BoardView> FramesThatCount(std::vector<BoardView> views,
-                                                     Resolution resolution);
-
-/// ||[fu fv pu pv] - truth|| / ||truth||: the paper's relative error [-].
-[[nodiscard]] double RelativeIntrinsicError(const Eigen::Vector4d& estimate,
-                                            const Eigen::Vector4d& truth);
 
 /// The intrinsic task: four loops, after each of which the camera is calibrated anew from all
 /// frames that count so far.
 ///
 /// Observation, 8 numbers: the estimate of fu fv pu pv over its prior mean, then the progress of X,
-/// Y, size and skew. Before any data, and while the data do not determine the camera (fewer than
-/// three frames, not converged, rank-deficient, or sigma(f) / f above 5 %), the estimate is the
-/// prior mean.
+/// Y, size and skew. Before any data, and while the data do not determine the camera
+/// (CalibrateIntrinsics), the estimate is the prior mean.
 ///
-/// Reward terms: coverage, relative_error, path_length, accuracy_bonus, refusal.
+/// Reward terms: coverage, information, relative_error, reprojection, path_length, accuracy_bonus,
+/// refusal.
 class IntrinsicEnvironment final : public Environment {
  public:
   explicit IntrinsicEnvironment(IntrinsicTask task) : task_(std::move(task)) {}
 
+  [[nodiscard]] std::unique_ptr<Environment> Clone() const override {
+    return std::make_unique<IntrinsicEnvironment>(*this);
+  }
   [[nodiscard]] int observation_size() const override { return 8; }
   [[nodiscard]] int horizon() const override { return NumLoops(Task::kIntrinsic); }
+  void SetConditions(const EpisodeConditions& conditions) override { conditions_ = conditions; }
   Eigen::VectorXd Reset(const Rng& rng) override;
   StepResult Step(const LoopCoefficients& action) override;
-  [[nodiscard]] double relative_error() const override { return relative_error_; }
+  [[nodiscard]] double relative_error() const override { return status_.relative_error; }
+  [[nodiscard]] double carried_over() const override;
+  void CarryOver(double carried_over) override { carried_coverage_ = carried_over; }
 
  private:
-  [[nodiscard]] Eigen::VectorXd Observation() const;
+  void Record(const TimedMotion& motion, const Rng& noise);
+  // With the original's constant: 1 until the last loop.
+  [[nodiscard]] double RewardedError() const;
 
   IntrinsicTask task_;
+  EpisodeConditions conditions_;
+  double carried_coverage_ = 0.0;
   // One episode:
   Rng noise_{0};
   Rig rig_;
@@ -70,8 +82,7 @@ class IntrinsicEnvironment final : public Environment {
   Time now_;
   std::vector<BoardView> views_;
   Coverage coverage_;
-  Eigen::Vector4d estimate_ = Eigen::Vector4d::Zero();
-  double relative_error_ = 0.0;
+  IntrinsicStatus status_;
   bool bonus_paid_ = false;
 };
 

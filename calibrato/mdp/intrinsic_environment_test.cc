@@ -26,8 +26,8 @@ std::vector<LoopCoefficients> HandcraftedActions() {
 }
 
 double Term(const StepResult& step, const std::string& name) {
-  for (const auto& [term, value] : step.terms) {
-    if (term == name) return value;
+  for (const RewardTerm& term : step.terms) {
+    if (term.name == name) return term.value();
   }
   ADD_FAILURE() << "no term " << name;
   return 0.0;
@@ -79,7 +79,7 @@ TEST(IntrinsicEnvironment, TheRewardIsTheSumOfItsTermsAndTheyAreTheirIncrements)
   for (const LoopCoefficients& action : HandcraftedActions()) {
     const StepResult step = environment.Step(action);
     double sum = 0.0;
-    for (const auto& [name, value] : step.terms) sum += value;
+    for (const RewardTerm& term : step.terms) sum += term.weight * term.increment;
     EXPECT_NEAR(step.reward, sum, 1e-14);
     EXPECT_NEAR(Term(step, "coverage"), step.observation.tail<4>().sum() - before.tail<4>().sum(),
                 1e-12);
@@ -135,6 +135,135 @@ TEST(FramesThatCount, AreEightPixelsInside) {
   EXPECT_TRUE(counts(631.0, 471.0));
   EXPECT_FALSE(counts(631.1, 471.0));
   EXPECT_FALSE(counts(631.0, 471.1));
+}
+
+TEST(IntrinsicTaskModel, IsThePapersForPinholesAndItsOwnForOtherLenses) {
+  Eigen::VectorXd parameters(4);
+  parameters << 500.0, 500.0, 320.0, 240.0;
+  EXPECT_EQ(IntrinsicTaskModel(CameraModel("pinhole-none", parameters)), "pinhole-radtan5");
+  Eigen::VectorXd fisheye = Eigen::VectorXd::Zero(8);
+  fisheye.head<4>() = parameters;
+  EXPECT_EQ(IntrinsicTaskModel(CameraModel("pinhole-equi", fisheye)), "pinhole-equi");
+}
+
+// A grid of three tags, of which the second is partly outside.
+TEST(FramesThatCount, AreThePartsOfAnAprilGridThatAreInside) {
+  BoardView view;
+  view.pixels.resize(2, 12);
+  view.points_g = Eigen::Matrix3Xd::Zero(3, 12);
+  for (int k = 0; k < 12; ++k) {
+    view.corner_ids.push_back(k);
+    view.pixels.col(k) << 100.0 + 10.0 * k, 200.0;
+  }
+  const AprilGrid grid{1, 3, 0.1, 0.3};
+  view.pixels(1, 5) = 2.0;
+  const std::vector<BoardView> counted = FramesThatCount({view}, {640, 480}, grid);
+  ASSERT_EQ(counted.size(), 1U);
+  EXPECT_EQ(counted[0].corner_ids, (std::vector<int>{0, 1, 2, 3, 8, 9, 10, 11}));
+  EXPECT_EQ(counted[0].pixels.col(4), view.pixels.col(8));
+  EXPECT_EQ(counted[0].points_g.cols(), 8);
+  view.pixels(1, 9) = 2.0;
+  EXPECT_TRUE(FramesThatCount({view}, {640, 480}, grid).empty());
+  EXPECT_TRUE(FramesThatCount({view}, {640, 480}, Board(Checkerboard{})).empty());
+}
+
+TEST(IntrinsicEnvironment, RewardsInformationAndReprojectionWhereTheyHaveWeights) {
+  IntrinsicTask task;
+  task.fixed_rig = PaperRig();
+  task.weights.information = 2.0;
+  task.weights.reprojection = 3.0;
+  task.weights.relative_error = 0.0;
+  IntrinsicEnvironment environment(task);
+  (void)environment.Reset(Rng(1));
+  double information = 0.0;
+  double reprojection = 0.0;
+  for (const LoopCoefficients& action : HandcraftedActions()) {
+    const StepResult step = environment.Step(action);
+    information += Term(step, "information") / 2.0;
+    reprojection += Term(step, "reprojection") / 3.0;
+    EXPECT_EQ(Term(step, "relative_error"), 0.0);
+  }
+  // The bound of the handcrafted motion is 0.24 % of ||theta|| (design figures), sqrt(trace) = 2.2
+  // px; the prior's is sqrt(2 * 34.8^2 + 2 * 10^2) = 51.2 px.
+  EXPECT_NEAR(information, std::log(51.2 / 2.2), 0.1);
+  EXPECT_NEAR(reprojection, 1.0 - 0.1 * std::sqrt(2.0), 0.02);
+}
+
+TEST(IntrinsicEnvironment, WithoutCalibrationTheEstimateStaysThePriors) {
+  IntrinsicEnvironment environment({});
+  environment.SetConditions({.calibrate = false, .max_iterations = {}});
+  (void)environment.Reset(Rng(1));
+  for (const LoopCoefficients& action : HandcraftedActions()) {
+    const StepResult step = environment.Step(action);
+    EXPECT_EQ(step.observation.head<4>(), Eigen::Vector4d::Ones());
+    EXPECT_EQ(Term(step, "relative_error"), 0.0);
+    EXPECT_EQ(Term(step, "accuracy_bonus"), 0.0);
+  }
+}
+
+TEST(IntrinsicMistakes, ConstantAccuracyRewardsAnyMotionAlike) {
+  IntrinsicTask task;
+  task.mistakes = {Mistake::kConstantAccuracy};
+  IntrinsicEnvironment environment(task);
+  Rng rng(2);
+  (void)environment.Reset(rng.Stream("episode"));
+  for (int step = 0; step < environment.horizon(); ++step) {
+    const StepResult result = environment.Step(RandomAction(rng));
+    EXPECT_NEAR(Term(result, "relative_error"), step == 3 ? 1.0 : 0.0, 0.03);
+  }
+}
+
+TEST(IntrinsicMistakes, CarriedCoverageIsTakenOffTheNextEpisode) {
+  IntrinsicTask task;
+  task.mistakes = {Mistake::kCarriedCoverage};
+  IntrinsicEnvironment environment(task);
+  (void)environment.Reset(Rng(1));
+  double covered = 0.0;
+  for (const LoopCoefficients& action : HandcraftedActions()) {
+    covered += Term(environment.Step(action), "coverage");
+  }
+  EXPECT_GT(covered, 1.0);
+  EXPECT_NEAR(environment.carried_over(), covered, 1e-12);
+  (void)environment.Reset(Rng(2));
+  const StepResult first = environment.Step(Still());
+  EXPECT_NEAR(Term(first, "coverage"), first.observation.tail<4>().sum() - covered, 1e-12);
+  // As a checkpoint brings it back.
+  IntrinsicEnvironment other(task);
+  other.CarryOver(covered);
+  (void)other.Reset(Rng(2));
+  EXPECT_EQ(other.Step(Still()).reward, first.reward);
+}
+
+TEST(IntrinsicMistakes, LostCoverageIsThatOfALoopThatEndsWithoutTheBoard) {
+  const auto coverage_after = [](const Mistakes& mistakes, double blur_at_half) {
+    IntrinsicTask task;
+    task.mistakes = mistakes;
+    task.fixed_rig = PaperRig();
+    task.fixed_rig->corner_noise.blur_at_half = blur_at_half;
+    IntrinsicEnvironment environment(task);
+    (void)environment.Reset(Rng(1));
+    return environment.Step(HandcraftedActions()[1]).observation.tail<4>().sum();
+  };
+  EXPECT_GT(coverage_after({Mistake::kLostCoverage}, 0.5), 0.5);
+  // Where every second board is missed, moving or not, the last frame has none now and then.
+  IntrinsicTask task;
+  task.fixed_rig = PaperRig();
+  task.fixed_rig->exposure_s = 1e-6;
+  task.fixed_rig->corner_noise.blur_at_half = 0.0;
+  int num_lost = 0;
+  for (uint64_t seed = 0; seed < 10; ++seed) {
+    task.mistakes = {Mistake::kLostCoverage};
+    IntrinsicEnvironment wrong(task);
+    task.mistakes = {};
+    IntrinsicEnvironment right(task);
+    (void)wrong.Reset(Rng(seed));
+    (void)right.Reset(Rng(seed));
+    const LoopCoefficients action = HandcraftedActions()[1];
+    EXPECT_GT(right.Step(action).observation.tail<4>().sum(), 0.5);
+    if (wrong.Step(action).observation.tail<4>().sum() == 0.0) ++num_lost;
+  }
+  EXPECT_GT(num_lost, 1);
+  EXPECT_LT(num_lost, 9);
 }
 
 }  // namespace

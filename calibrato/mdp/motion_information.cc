@@ -18,7 +18,6 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-constexpr int kFramesPerLoop = 50;
 constexpr double kIntrinsicMarginPx = 8.0;
 constexpr double kExtrinsicMarginPx = 0.0;
 constexpr double kImuRateHz = 50.0;
@@ -110,7 +109,8 @@ std::optional<MotionInformation> ExpectIntrinsicInformation(
   const CameraModel& model = camera.model;
   const Rigid3 T_c_e = rig.T_e_c0.Inverse();
   const Rigid3 T_b_g = ArmBaseInWorld().Inverse() * rig.T_w_g;
-  const Visibility visibility(camera, PlannedView(rig.board), kIntrinsicMarginPx,
+  const Visibility visibility(camera, PlannedView(rig.board),
+                              kIntrinsicMarginPx + options.extra_margin_px,
                               options.visibility_softness_px);
   const double variance = rig.corner_noise.stddev_px * rig.corner_noise.stddev_px;
   const auto information_at = [&](const Rigid3& T_c_g) {
@@ -129,8 +129,8 @@ std::optional<MotionInformation> ExpectIntrinsicInformation(
   const int num_parameters = model.num_parameters();
   MatrixXd sum = MatrixXd::Zero(num_parameters, num_parameters);
   for (size_t loop = 0; loop < motion.loops.size(); ++loop) {
-    const double per_second = rig.camera_rate_hz / kFramesPerLoop;
-    for (Instant& instant : InstantsOf(motion, loop, 0.0, kFramesPerLoop)) {
+    const double per_second = rig.camera_rate_hz / options.frames_per_loop;
+    for (Instant& instant : InstantsOf(motion, loop, 0.0, options.frames_per_loop)) {
       const Rigid3 T_c_g = T_c_e * PoseOf(instant.kinematics).Inverse() * T_b_g;
       const double visible = visibility.At(T_c_g);
       if (visible < kLeastWeight) continue;
@@ -189,7 +189,8 @@ std::optional<MotionInformation> ExpectExtrinsicInformation(
   const Matrix3d R_i_e = T_e_i.R.transpose();
   const Vector3d& lever = T_e_i.t;
   const Vector3d gravity_b = ArmBaseInWorld().R.transpose() * Vector3d(0, 0, -kStandardGravity);
-  const Visibility visibility(camera, PlannedView(rig.board), kExtrinsicMarginPx,
+  const Visibility visibility(camera, PlannedView(rig.board),
+                              kExtrinsicMarginPx + options.extra_margin_px,
                               options.visibility_softness_px);
   const std::vector<double> starts = StartsOf(motion);
 
@@ -209,12 +210,13 @@ std::optional<MotionInformation> ExpectExtrinsicInformation(
                              R_i_e * e.omega_e, R_i_e * force_e});
       imu_instants.push_back(std::move(instant));
     }
-    for (Instant& instant : InstantsOf(motion, loop, starts[loop], kFramesPerLoop)) {
+    for (Instant& instant : InstantsOf(motion, loop, starts[loop], options.frames_per_loop)) {
       const FrameKinematics& e = instant.kinematics;
       const Rigid3 T_c_g = T_c_e * PoseOf(e).Inverse() * T_b_g;
       const double visible = visibility.At(T_c_g);
-      const double weight =
-          visible < kLeastWeight ? 0.0 : visible * rig.camera_rate_hz * duration / kFramesPerLoop;
+      const double weight = visible < kLeastWeight
+                                ? 0.0
+                                : visible * rig.camera_rate_hz * duration / options.frames_per_loop;
       result.num_frames += weight;
       planned.frames.push_back({instant.t_s, weight, T_c_g, R_i_e * e.omega_e,
                                 R_g_b * (e.velocity_b + e.R_b_e * e.omega_e.cross(lever))});
@@ -262,7 +264,7 @@ std::optional<MotionInformation> ExpectExtrinsicInformation(
     const FrameKinematics& e = instant.kinematics;
     const PlannedMotionGradient::Frame& by = expected->gradient.frames[k];
     const double duration = motion.loops[instant.loop].duration_s;
-    const double seen = rig.camera_rate_hz * duration / kFramesPerLoop;
+    const double seen = rig.camera_rate_hz * duration / options.frames_per_loop;
     FrameKinematicsGradient gradient;
     AddPoseGradient(by.T_c_g + by.weight * seen * visibility.Gradient(frame.T_c_g), T_c_e, T_b_g, e,
                     &gradient);

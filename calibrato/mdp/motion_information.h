@@ -20,6 +20,12 @@ struct MotionInformationOptions {
   /// A frame counts with 1 / (1 + exp(-(margin - wanted margin) / this)), its margin being how far
   /// the outermost corner is inside the image [px] > 0: a step would have no derivative.
   double visibility_softness_px = 1.0;
+  /// Frames count when the board is so much further inside the image than is wanted [px] >= 0: for
+  /// those who do not trust the border.
+  double extra_margin_px = 0.0;
+  /// Frames that each loop is judged by, >= 16 (the fourth harmonic needs so many), whatever the
+  /// camera's rate: their weights make up for it.
+  int frames_per_loop = 50;
 };
 
 struct MotionInformation {
@@ -32,9 +38,9 @@ struct MotionInformation {
 };
 
 /// Of the camera's parameters, from frames at the rig's rate with its corner noise at rest, each
-/// frame of unknown pose. Frames are spread evenly over each loop, 50 of them with the weight of as
-/// many as the rate gives in its duration, so that the number is smooth in the duration. Frames
-/// count when the board is at least 8 px inside the image.
+/// frame of unknown pose. Frames are spread evenly over each loop, a fixed number with the weight
+/// of as many as the rate gives in its duration, so that the number is smooth in the duration.
+/// Frames count when the board is at least 8 px inside the image.
 /// @param motion  Its durations are those of the execution (a carrier may stretch them).
 /// @return nothing where the frames do not determine the camera.
 [[nodiscard]] std::optional<MotionInformation> ExpectIntrinsicInformation(

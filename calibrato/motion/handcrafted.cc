@@ -46,7 +46,7 @@ constexpr double kExtrinsicMultiplier = 1.0;
 }  // namespace
 
 Motion HandcraftedMotion(Task task) {
-  const bool intrinsic = task == Task::kIntrinsic;
+  const bool intrinsic = task != Task::kExtrinsic;
   Motion motion;
   for (const std::vector<Entry>& entries : intrinsic ? kIntrinsicLoops : kExtrinsicLoops) {
     const LoopCoefficients action =

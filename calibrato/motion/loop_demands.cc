@@ -39,6 +39,7 @@ LoopDemand SmoothMaximum(const std::vector<Share>& shares, double duration_s) {
   double sum = 0.0;
   for (const Share& share : shares) sum += std::exp(kSharpness * (share.value - largest));
   LoopDemand demand;
+  demand.largest = largest;
   demand.value = largest + std::log(sum) / kSharpness;
   for (const Share& share : shares) {
     const double weight = std::exp(kSharpness * (share.value - largest)) / sum;

@@ -12,6 +12,7 @@ namespace calibrato {
 /// A number and its derivatives by the loop's coefficients and duration.
 struct LoopDemand {
   double value = 0.0;
+  double largest = 0.0;  ///< Of the instants' own, where the value is their smooth maximum.
   LoopGradient gradient;
 };
 

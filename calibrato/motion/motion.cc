@@ -12,7 +12,7 @@ namespace {
 
 // In the order of the enums.
 const std::vector<std::string> kCarrierNames = {"free", "arm"};
-const std::vector<std::string> kTaskNames = {"intrinsic", "extrinsic"};
+const std::vector<std::string> kTaskNames = {"intrinsic", "extrinsic", "joint"};
 
 // An enum's value from its name. @throws InputError that gives all names.
 template <typename Enum>
@@ -22,8 +22,11 @@ Enum FromName(const std::string& kind, const std::string& name,
     if (names[i] == name) return static_cast<Enum>(i);
   }
   const std::optional<std::string> nearest = NearestName(name, names);
-  throw InputError({"unknown " + kind + " '" + name + "'", "",
-                    "there are " + names[0] + " and " + names[1],
+  std::string list = names.front();
+  for (size_t i = 1; i < names.size(); ++i) {
+    list += (i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  throw InputError({"unknown " + kind + " '" + name + "'", "", "there are " + list,
                     nearest ? "did you mean " + *nearest + "?" : "choose one of them"});
 }
 
@@ -68,7 +71,7 @@ Carrier CarrierFromName(const std::string& name) {
 std::string TaskName(Task task) { return kTaskNames[static_cast<size_t>(task)]; }
 Task TaskFromName(const std::string& name) { return FromName<Task>("task", name, kTaskNames); }
 
-int NumLoops(Task task) { return task == Task::kIntrinsic ? 4 : 3; }
+int NumLoops(Task task) { return task == Task::kExtrinsic ? 3 : 4; }
 
 Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings) {
   // A timed joint path is written for the arm's sake; it follows from the rest and is not read.

@@ -16,10 +16,14 @@ enum class Carrier {
 [[nodiscard]] std::string CarrierName(Carrier carrier);          ///< "free", "arm"
 [[nodiscard]] Carrier CarrierFromName(const std::string& name);  ///< @throws InputError
 
-enum class Task { kIntrinsic, kExtrinsic };
-[[nodiscard]] std::string TaskName(Task task);
+enum class Task {
+  kIntrinsic,  ///< The camera.
+  kExtrinsic,  ///< Camera and IMU, the camera being known.
+  kJoint,      ///< Both in one motion.
+};
+[[nodiscard]] std::string TaskName(Task task);             ///< "intrinsic", ..
 [[nodiscard]] Task TaskFromName(const std::string& name);  ///< @throws InputError
-[[nodiscard]] int NumLoops(Task task);                     ///< 4 intrinsic, 3 extrinsic.
+[[nodiscard]] int NumLoops(Task task);                     ///< 4 intrinsic, 3 extrinsic, 4 joint.
 
 struct Loop {
   LoopCoefficients coefficients = LoopCoefficients::Zero();  ///< After scaling, [m] and [rad].
@@ -50,7 +54,8 @@ struct Motion {
 [[nodiscard]] double PathLengthOriginal(const Motion& motion);
 
 /// The paper's rivals. Handcrafted: as in the original implementation (four loops for the intrinsic
-/// task, with coefficients of 0.102; three for the extrinsic). Random: coefficients uniform in
+/// and joint tasks, with coefficients of 0.102; three for the extrinsic). Random: coefficients
+/// uniform in
 /// +-0.02 before scaling.
 [[nodiscard]] Motion HandcraftedMotion(Task task);
 [[nodiscard]] Motion RandomMotion(Task task, Rng& rng);

@@ -67,7 +67,8 @@ testing::AssertionResult Says(const std::string& drawn, const std::string& words
 TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
   const std::string drawn =
       Draw({CameraDocumentForTest(), CameraImuDocumentForTest(), CheckDocumentForTest(),
-            NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest()});
+            NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest(),
+            ParetoDocumentForTest()});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "plot-failed"));
   EXPECT_FALSE(Says(drawn, "class=\"empty\""));
@@ -88,12 +89,19 @@ TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
   EXPECT_TRUE(Says(drawn, "Where cam0 saw corners"));
   EXPECT_TRUE(Says(drawn, "below 0.00003 (95 %)"));
   EXPECT_TRUE(Says(drawn, "Best return 2.318 over 300 episodes."));
+  EXPECT_TRUE(Says(drawn, "Errors of both networks"));
+  EXPECT_TRUE(Says(drawn, "Convergence of the search"));
+  EXPECT_TRUE(Says(drawn, "reward loss not finite: back to episode 150"));
   EXPECT_TRUE(Says(drawn,
                    "learned has 0.55 times the error of handcrafted (95 % interval 0.495 to "
                    "0.605), over 40 rigs: better, and more than chance."));
   EXPECT_TRUE(Says(drawn,
                    "learned at random's path has 0.31 times the error of random (95 % interval "
                    "0.26 to 0.358), over 40 rigs: better, and more than chance."));
+  EXPECT_TRUE(Says(drawn, "3 rows of 60 trials, of which 3 failed."));
+  EXPECT_TRUE(Says(drawn, "Extrinsic error against path"));
+  // Every plot can be taken along.
+  EXPECT_TRUE(Says(drawn, "<div class=\"save\"><button type=\"button\">CSV</button>"));
   const std::string console = Console();
   EXPECT_FALSE(Says(console, "Uncaught")) << console;
   EXPECT_FALSE(Says(console, "Content Security Policy")) << console;
@@ -113,7 +121,8 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
       Draw({Value::Object().Set("kind", "horoscope").Set("luck", 7), camera,
             Value::Object().Set("kind", "learn"), broken, Value::Object().Set("kind", "table1"),
             Value::Object().Set("kind", "camera-imu"), Value::Object().Set("kind", "diff"),
-            Value::Object().Set("kind", "check"), Value::Object().Set("kind", "noise")});
+            Value::Object().Set("kind", "check"), Value::Object().Set("kind", "noise"),
+            Value::Object().Set("kind", "rivals"), Value::Object().Set("kind", "evaluation")});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "undefined"));
   EXPECT_TRUE(Says(drawn, "This page cannot draw results of kind “horoscope”."));

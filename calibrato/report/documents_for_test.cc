@@ -143,7 +143,10 @@ Value TrainingLine(int episode, const std::string& kind, double progress, Rng* r
   const double path = 11 - 5 * progress + rng->Normal(0, 0.8);
   const double total = coverage - 200 * error - 0.1 * path;
   Value line = Value::Object();
-  line.Set("episode", episode).Set("kind", kind).Set("return", Rounded(total));
+  line.Set("episode", episode)
+      .Set("kind", kind)
+      .Set("stage", episode < 200 ? "learned" : "fine-tuned")
+      .Set("return", Rounded(total));
   line.Set("terms", Value::Object()
                         .Set("coverage", Rounded(coverage))
                         .Set("relative_error", Rounded(-200 * error))
@@ -154,6 +157,11 @@ Value TrainingLine(int episode, const std::string& kind, double progress, Rng* r
     line.Set("dynamics_loss", 0.9 * std::exp(-3 * progress) + 0.05 * rng->Uniform());
     line.Set("reward_loss", 0.5 * std::exp(-2 * progress) + 0.03 * rng->Uniform());
     line.Set("predicted_return", Rounded(total + 0.3 + rng->Normal(0, 0.4)));
+    line.Set("reward_prediction_error", 0.4 * std::exp(-progress));
+    line.Set("observation_prediction_error", 0.8 * std::exp(-progress));
+    std::vector<double> best_so_far;
+    for (int k = 0; k < 6; ++k) best_so_far.push_back(Rounded(total + 0.1 * k));
+    line.Set("best_so_far", Value::Numbers(best_so_far));
   } else {
     line.Set("dynamics_loss", Value()).Set("reward_loss", Value()).Set("predicted_return", Value());
   }
@@ -525,6 +533,13 @@ Value LearnDocumentForTest() {
     const double progress = episode < 30 ? 0.0 : 1 - std::exp(-(episode - 30) / 90.0);
     training.Append(TrainingLine(episode, episode < 30 ? "random" : "training", progress, &rng));
     if (episode % 20 == 19) training.Append(TrainingLine(episode, "test", progress, &rng));
+    if (episode != 150) continue;
+    training.Append(Value::Object()
+                        .Set("episode", 150)
+                        .Set("kind", "rollback")
+                        .Set("diverged_at_episode", 153)
+                        .Set("why", "reward loss not finite")
+                        .Set("learning_rate", 5e-5));
   }
   Value motion = Motion("learned", 0.08, 5.6);
   motion.Set("board_outline_b", BoardOutline());

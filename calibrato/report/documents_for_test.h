@@ -11,5 +11,6 @@ Value CheckDocumentForTest();
 Value NoiseDocumentForTest();
 Value LearnDocumentForTest();
 Value Table1DocumentForTest();
+Value ParetoDocumentForTest();
 
 }  // namespace calibrato

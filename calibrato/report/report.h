@@ -55,6 +55,14 @@ namespace calibrato {
 /// optical axis is [x, y, z, dx, dy, dz], a point and a unit vector; or [dx, dy, dz], and then the
 /// axes belong to points spread evenly along the whole motion.
 ///
+/// "table6": the same.
+///
+/// "figure4", "figure5", "figure7", "pareto", "rivals": evaluate's result.json, and "plots":
+///     {"columns": [{"key", "name", "unit", "interval_key"}..],    of the rows
+///      "charts": [evaluation/chart.h ..]}
+///
+/// "evaluation": nothing but its kind; what `evaluate all` made follows it.
+///
 /// A document of any other kind is named, and its numbers are listed as they came.
 ///
 /// @throws InputError if a document is not an object with a text "kind".

@@ -23,9 +23,44 @@ function emptyNote(reason) {
   return element("p", {class: "empty"}, reason);
 }
 
-/** Rows of cells; a cell is a text or an element. */
+/** The text that stands first in a cell: its number, without the interval below it. */
+function firstText(cell) {
+  return document.createTreeWalker(cell, NodeFilter.SHOW_TEXT).nextNode()?.textContent ?? "";
+}
+
+/** Numbers by size, texts by letters, what is missing last; upwards at first, then downwards. */
+function sortTable(head, column) {
+  const body = head.closest("table").tBodies[0];
+  const up = head.getAttribute("aria-sort") !== "ascending";
+  for (const other of head.parentNode.children) other.removeAttribute("aria-sort");
+  head.setAttribute("aria-sort", up ? "ascending" : "descending");
+  const keyed = [...body.rows].map((row) => {
+    const text = firstText(row.cells[column]);
+    return {row, text, value: text === kNothing ? NaN : Number(text)};
+  });
+  const numeric = keyed.every(({text, value}) => text === kNothing || !Number.isNaN(value));
+  keyed.sort((a, b) => {
+    if ((a.text === kNothing) !== (b.text === kNothing)) return a.text === kNothing ? 1 : -1;
+    if (a.text === kNothing) return 0;
+    return (up ? 1 : -1) * (numeric ? a.value - b.value : a.text.localeCompare(b.text));
+  });
+  body.append(...keyed.map(({row}) => row));
+}
+
+function sortingHeader(content, column) {
+  const head = element("th", {scope: "col", tabindex: "0", class: "sorts"}, content);
+  head.addEventListener("click", () => sortTable(head, column));
+  head.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") sortTable(head, column);
+  });
+  return head;
+}
+
+/** Rows of cells; a cell is a text or an element. From three rows on, columns sort at a click. */
 function table(headers, rows, caption) {
-  const head = element("tr", {}, ...headers.map((text) => element("th", {scope: "col"}, text)));
+  const head = element("tr", {}, ...headers.map((text, column) => {
+    return rows.length > 2 ? sortingHeader(text, column) : element("th", {scope: "col"}, text);
+  }));
   const body = rows.map(
       (row) => element("tr", {}, ...row.map((cell) => element("td", {}, cell))));
   const made = element("table", {}, element("thead", {}, head), element("tbody", {}, ...body));

@@ -3,7 +3,7 @@
 const kRunningWindow = 20;
 
 function learnSummary(result) {
-  const training = list(result.training);
+  const training = episodesOf(list(result.training));
   const details = [];
   if (isNumber(result.calibrations)) details.push(`${number(result.calibrations)} calibrations`);
   if (isNumber(result.information_evaluations)) {
@@ -20,6 +20,26 @@ function learnSummary(result) {
     details: details.length > 0 ? `${capitalised(details.join(", "))}.` : "",
     findings: list(result.findings),
   };
+}
+
+/** Lines of episodes; where training went back to a checkpoint there is a line of another kind. */
+function episodesOf(training) {
+  return training.filter((line) => line.kind !== "rollback");
+}
+
+/** Dashed uprights where a later stage of training begins. */
+function stageShapes(training) {
+  const shapes = [];
+  let stage = training.find((line) => line.stage)?.stage;
+  for (const line of training) {
+    if (!line.stage || line.stage === stage) continue;
+    stage = line.stage;
+    shapes.push({
+      type: "line", yref: "paper", y0: 0, y1: 1, x0: line.episode - 0.5, x1: line.episode - 0.5,
+      line: {color: kBlack, dash: "dot", width: 1},
+    });
+  }
+  return shapes;
 }
 
 /** Of the last few values that exist; null where there are none yet. */
@@ -67,7 +87,7 @@ function episodeCard(training, title, note, yAxis, valueOf) {
   const build = () => {
     const data = episodeTraces(training, valueOf);
     if (data.length === 0) return "The training has no such numbers.";
-    return {data, layout: {xaxis: axis("episode"), yaxis: yAxis}};
+    return {data, layout: {xaxis: axis("episode"), yaxis: yAxis, shapes: stageShapes(training)}};
   };
   return card(title, note, plot(build));
 }
@@ -88,9 +108,42 @@ function meanLinesCard(training, title, note, yAxis, valuesOf, names) {
       });
     }
     if (data.length === 0) return "The training has no such numbers.";
-    return {data, layout: {xaxis: axis("episode"), yaxis: yAxis}};
+    return {data, layout: {xaxis: axis("episode"), yaxis: yAxis, shapes: stageShapes(training)}};
   };
   return card(title, note, plot(build));
+}
+
+/** How far the search came in the first step of some episodes, from its first round to its last. */
+function convergenceCard(training) {
+  const kCurves = 7;
+  const build = () => {
+    const lines = training.filter((line) => list(line.best_so_far).length > 1);
+    if (lines.length === 0) return "No search of more than one round was handed over.";
+    const count = Math.min(kCurves, lines.length);
+    const chosen = Array.from({length: count}, (_, i) =>
+      lines[count === 1 ? 0 : Math.round(i * (lines.length - 1) / (count - 1))]);
+    const data = chosen.map((line, i) => ({
+      type: "scatter", mode: "lines+markers", name: `episode ${line.episode}`,
+      x: line.best_so_far.map((_, k) => k), y: line.best_so_far,
+      line: {color: kPalette[i % kPalette.length], width: 2}, marker: {size: 5},
+      hovertemplate: `episode ${line.episode}, round %{x}: %{y:.4g}<extra></extra>`,
+    }));
+    return {data, layout: {xaxis: axis("round of the search", {dtick: 1}),
+                           yaxis: axis("best predicted return so far")}};
+  };
+  return card("Convergence of the search",
+              "What the planner promised itself at the first loop, in episodes spread over the run. " +
+              "Flat lines: it found nothing better than it began with.", plot(build));
+}
+
+/** Where training went back to its last checkpoint, and why. */
+function rollbackCard(rollbacks) {
+  const rows = rollbacks.map((line) => [
+    `episode ${number(line.diverged_at_episode)}`,
+    `${line.why ?? "diverged"}: back to episode ${number(line.episode)}, ` +
+    `on with learning rate ${number(line.learning_rate, 2)}`,
+  ]);
+  return card("Returns to the last checkpoint", "Training had diverged.", facts(rows));
 }
 
 function predictionCard(training) {
@@ -123,11 +176,15 @@ function predictionCard(training) {
 }
 
 function learnSection(result) {
-  const training = list(result.training);
+  const training = episodesOf(list(result.training));
+  const rollbacks = list(result.training).filter((line) => line.kind === "rollback");
   const made = element("div", {class: "cards"});
   made.append(wide(card("In short", "", facts([
     ["task", result.task ?? ""],
     ["preset", result.preset ?? ""],
+    ["planner", result.planner ?? ""],
+    ...(result.mistakes && result.mistakes !== "none"
+        ? [["mistakes of the original, on purpose", result.mistakes]] : []),
     ["episodes", number(result.episodes)],
     ["calibrations", number(result.calibrations)],
     ["evaluations of the information", number(result.information_evaluations)],
@@ -152,9 +209,16 @@ function learnSection(result) {
                       "As the mean of the last 20 episodes.", logAxis("loss"),
                       (line, name) => line[name], ["dynamics_loss", "reward_loss"]),
         predictionCard(training),
+        meanLinesCard(training, "Errors of both networks' predictions",
+                      "One step ahead, of the reward as it is and of the observation in standard " +
+                      "deviations; root mean square over an episode, mean of the last 20.",
+                      logAxis("error"), (line, name) => line[name],
+                      ["reward_prediction_error", "observation_prediction_error"]),
+        convergenceCard(training),
         episodeCard(training, "Path length of each episode",
                     "Length of the motion, with 1 m a rad.",
                     axis("path [m]", {rangemode: "tozero"}), (line) => line.path_length_m));
+    if (rollbacks.length > 0) made.append(rollbackCard(rollbacks));
     if (training.some((line) => line.refused > 0)) {
       made.append(meanLinesCard(
           training, "Refused actions",

@@ -10,6 +10,23 @@ const kKinds = {
   "noise": {title: "Noise of an IMU", summary: noiseSummary, section: noiseSection},
   "learn": {title: "Learning", summary: learnSummary, section: learnSection},
   "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
+  "table6": {
+    title: "Trained on reprojection error", summary: table1Summary, section: table1Section,
+  },
+  "evaluation": {
+    title: "Tables and figures", summary: evaluationSummary, section: evaluationSection,
+  },
+  "figure4": {title: "Field of view", summary: evaluationSummary, section: evaluationSection},
+  "figure5": {title: "Errors over rigs", summary: evaluationSummary, section: evaluationSection},
+  "figure7": {
+    title: "Residuals and biases", summary: evaluationSummary, section: evaluationSection,
+  },
+  "pareto": {
+    title: "Error against budget", summary: evaluationSummary, section: evaluationSection,
+  },
+  "rivals": {
+    title: "Estimators compared", summary: evaluationSummary, section: evaluationSection,
+  },
 };
 
 function unknownKind(kind) {

@@ -24,9 +24,9 @@ const kPolicySymbols = {
   "fine-tuned": "diamond",
 };
 
-/** The policy of which this is the motion made as short as random's, or the policy itself. */
+/** The policy of which this is the motion with a rival's path length, or the policy itself. */
 function withoutPath(policy) {
-  return typeof policy === "string" ? policy.replace(/ at random's path$/, "") : policy;
+  return typeof policy === "string" ? policy.replace(/ at (random|handcrafted)'s path$/, "") : policy;
 }
 
 /** The same on the whole page, for policies that are not the paper's as well. */
@@ -34,7 +34,7 @@ const policyColour = (() => {
   const others = [kVermilion, kSkyBlue, kBlack, kGrey];
   const given = new Map(Object.entries(kPolicyColours));
   return (policy) => {
-    // The same motion made shorter is the same colour made lighter.
+    // The same motion at another length is the same colour made lighter.
     if (withoutPath(policy) !== policy) return shade(policyColour(withoutPath(policy)), 0.45);
     if (!given.has(policy)) {
       given.set(policy, others[(given.size - Object.keys(kPolicyColours).length) % others.length]);
@@ -164,6 +164,42 @@ function colourBar(title) {
   };
 }
 
+/** What a plot shows, a line for each point. */
+function plotCsv(place) {
+  const quoted = (text) => `"${String(text ?? "").replace(/"/g, '""')}"`;
+  const lines = ["series,x,y,z"];
+  for (const trace of place.data) {
+    const length = Math.max(...["x", "y", "z"].map((axis) => trace[axis]?.length ?? 0));
+    for (let i = 0; i < length; ++i) {
+      lines.push([quoted(trace.name), trace.x?.[i], trace.y?.[i], trace.z?.[i]]
+          .map((cell) => cell ?? "").join(","));
+    }
+  }
+  return `${lines.join("\n")}\n`;
+}
+
+function saveAs(name, url) {
+  element("a", {href: url, download: name}).click();
+}
+
+/** The figure's data as a list and its picture, for papers and talks. */
+function saveButtons(place) {
+  const title = place.closest(".card")?.querySelector("h3")?.textContent ?? "plot";
+  const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+  const csv = element("button", {type: "button"}, "CSV");
+  csv.addEventListener("click", () => {
+    const url = URL.createObjectURL(new Blob([plotCsv(place)], {type: "text/csv"}));
+    saveAs(`${name}.csv`, url);
+    URL.revokeObjectURL(url);
+  });
+  const svg = element("button", {type: "button"}, "SVG");
+  svg.addEventListener("click", async () => {
+    const {clientWidth: width, clientHeight: height} = place;
+    saveAs(`${name}.svg`, await Plotly.toImage(place, {format: "svg", width, height}));
+  });
+  return element("div", {class: "save"}, csv, svg);
+}
+
 const drawQueue = [];
 
 /** What is drawn here waits for its turn; `draw` may return a promise. */
@@ -186,6 +222,7 @@ function plot(build, options = {}) {
       return;
     }
     await Plotly.newPlot(place, figure.data, completeLayout(figure.layout), kConfig);
+    place.after(saveButtons(place));
   });
   return place;
 }

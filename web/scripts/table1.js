@@ -56,6 +56,11 @@ function comparisonsOf(policy, setting, rows) {
     made.push(comparison(setting, fair, "random", fair.ratio_to_random,
                          fair.ratio_to_random_ci95));
   }
+  const rival = row?.best_simple_rival;
+  if (rival && rival !== "handcrafted" && isNumber(row.ratio_to_best_simple_rival)) {
+    made.push(comparison(setting, row, `the best simple rival (${rival})`,
+                         row.ratio_to_best_simple_rival, row.ratio_to_best_simple_rival_ci95));
+  }
   return made;
 }
 
@@ -98,17 +103,28 @@ const kColumns = [
   ["motion_s", "time", "s", 3],
   ["error_over_bound", "error over bound", "", 3],
   ["failures", "failed", "", 4],
+  ["paper_mean_error_percent", "the paper's mean error", "%", 3],
+  ["paper_path_length_m", "the paper's path", "m", 5],
 ];
 const kFurtherColumns = [
   ["median_error_percent", "median error", "%", 3],
+  ["ratio_to_best_simple_rival", "over the best simple rival", "", 3,
+   "ratio_to_best_simple_rival_ci95"],
+  ["probability_as_handcrafted", "probability of no difference to handcrafted (Holm)", "", 2],
   ["focal_error_px", "focal length error", "px", 3],
+  ["centre_error_px", "centre error", "px", 3],
+  ["distortion_error_px", "distortion error", "px", 3],
   ["prediction_error_px", "prediction error", "px", 3],
   ["translation_error_m", "translation error", "m", 3],
   ["rotation_error_rad", "rotation error", "rad", 3],
   ["time_offset_error_s", "time offset error", "s", 3],
   ["a_optimality", "A-optimality", "", 3],
   ["a_optimality_conditional", "A-optimality, conditional", "", 3],
-  ["path_length_original_m", "path as the paper summed it", "m", 4],
+  ["a_optimality_original", "A-optimality as the paper's", "", 3],
+  ["paper_a_optimality", "the paper's A-optimality", "", 3],
+  ["num_frames", "frames", "", 4],
+  ["mean_nees", "mean NEES", "", 3, "mean_nees_expected"],
+  ["path_length_original_m", "path as the paper summed it", "m", 5],
   ["scale", "shrunk to fit by", "", 3],
 ];
 
@@ -236,7 +252,9 @@ function table1Section(result) {
   const made = element("div", {class: "cards"});
   const tables = card("The table", "Errors are relative to the truth, ratios are of mean errors; " +
                                    "each with its 95 % interval below. A ratio whose interval " +
-                                   "excludes 1 is more than chance.");
+                                   "excludes 1 is more than chance. What is the paper's comes " +
+                                   "from its own simulator and estimators. Columns sort at a " +
+                                   "click on their heads.");
   if (rows.length === 0) tables.append(emptyNote("There are no rows."));
   for (const [setting, group] of settings(rows)) tables.append(...table1Tables(setting, group));
   const resolution = plots.resolution ?? [640, 480];

@@ -1,0 +1,45 @@
+#include "calibrato/cli/design_arguments.h"
+
+#include <utility>
+
+#include "calibrato/mdp/design_setting.h"
+
+namespace calibrato {
+namespace {
+
+// Half of what expected information uses by default: enough for the fourth harmonic, in half the
+// time.
+constexpr int kFramesPerLoop = 24;
+
+}  // namespace
+
+void AddDesignArguments(CLI::App& app, DesignArguments* arguments) {
+  app.add_option("--believed", arguments->num_believed,
+                 "Rigs that a design must suit, drawn beside the nominal one")
+      ->check(CLI::Range(0, 1000))
+      ->capture_default_str();
+  app.add_option("--max-path", arguments->max_path_m,
+                 "Path of the motion [m] (that of the handcrafted one)")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--max-time", arguments->max_time_s,
+                 "Duration of the motion [s] (that of the handcrafted one)")
+      ->check(CLI::PositiveNumber);
+}
+
+MotionDesignProblem MakeDesignProblem(Task task, Carrier carrier, std::vector<Rig> rigs,
+                                      const DesignArguments& arguments) {
+  MotionDesignProblem problem;
+  problem.task = task;
+  problem.rigs = std::move(rigs);
+  problem.num_loops = NumLoops(task);
+  problem.frames_per_loop = kFramesPerLoop;
+  Motion handcrafted = HandcraftedMotion(task);
+  handcrafted.carrier = carrier;
+  handcrafted.base_pose = problem.base_pose;
+  const MotionBudget budget = BudgetOf(handcrafted, problem.rigs.front());
+  problem.max_path_m = arguments.max_path_m > 0.0 ? arguments.max_path_m : budget.path_m;
+  problem.max_duration_s = arguments.max_time_s > 0.0 ? arguments.max_time_s : budget.duration_s;
+  return problem;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,214 @@
+#include "calibrato/cli/evaluate_parts.h"
+
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/cli/parse.h"
+#include "calibrato/evaluation/chart.h"
+#include "calibrato/evaluation/figure4.h"
+#include "calibrato/evaluation/figure5.h"
+#include "calibrato/evaluation/figure7.h"
+#include "calibrato/evaluation/outside_estimator.h"
+#include "calibrato/evaluation/pareto.h"
+#include "calibrato/evaluation/rivals.h"
+#include "calibrato/evaluation/table1.h"
+#include "calibrato/evaluation/table1_document.h"
+
+namespace calibrato {
+namespace {
+
+// Which the paper's figure shows.
+Task OnlyTask(const EvaluateOptions& options, Task only, const std::string& what) {
+  if (!options.task.empty() && TaskFromName(options.task) != only) {
+    throw InputError({"no " + what + " of task " + options.task, "",
+                      "the paper has it for the " + TaskName(only) + " task", "leave out --task"});
+  }
+  return only;
+}
+
+const std::vector<Column> kErrorColumns = {{"policy", "motion", "", ""},
+                                           {"n", "rigs", "", ""},
+                                           {"mean_error_percent", "mean error", "%", "ci95"},
+                                           {"median_error_percent", "median error", "%", ""},
+                                           {"prediction_error_px", "prediction error", "px", ""},
+                                           {"path_length_m", "path", "m", ""},
+                                           {"motion_s", "time", "s", ""},
+                                           {"num_frames", "frames", "", ""},
+                                           {"error_over_bound", "error over bound", "", ""},
+                                           {"failures", "failed", "", ""}};
+
+std::vector<Column> WithFirst(const Column& first, std::vector<Column> columns) {
+  columns.insert(columns.begin() + 1, first);
+  return columns;
+}
+
+void AddCharts(const std::vector<Column>& columns, const std::vector<Chart>& charts,
+               EvaluationPart* part) {
+  const std::string kind = part->result.At("kind").AsString();
+  Value drawn = Value::Array();
+  for (size_t k = 0; k < charts.size(); ++k) {
+    drawn.Append(ToValue(charts[k]));
+    part->files[kind + (charts.size() == 1 ? "" : "-" + std::to_string(k + 1)) + ".csv"] =
+        ChartCsv(charts[k]);
+  }
+  part->plots = Value::Object();
+  part->plots.Set("columns", ToValue(columns)).Set("charts", std::move(drawn));
+}
+
+// One line a row, of those columns that are numbers.
+std::string RowsText(const Value& result, const std::vector<Column>& columns) {
+  std::string text;
+  char cell[64];
+  for (const Column& column : columns) {
+    const std::string unit = column.unit.empty() ? "" : " [" + column.unit + "]";
+    std::snprintf(cell, sizeof(cell), column.key == "policy" ? "%-24s" : "%20s",
+                  (column.name + unit).c_str());
+    text += cell;
+  }
+  text += "\n";
+  for (const Value& row : result.At("rows").elements()) {
+    for (const Column& column : columns) {
+      const Value* value = row.Find(column.key);
+      if (column.key == "policy") {
+        std::snprintf(cell, sizeof(cell), "%-24s", row.At("policy").AsString().c_str());
+      } else if (value == nullptr || column.key == "estimator") {
+        std::snprintf(cell, sizeof(cell), "%20s",
+                      value == nullptr ? "-" : value->AsString().c_str());
+      } else {
+        std::snprintf(cell, sizeof(cell), "%20.4g", value->AsDouble());
+      }
+      text += cell;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+EvaluationPart MakeTable(const std::string& kind, const std::string& title,
+                         const EvaluateOptions& options, const GlobalOptions& global,
+                         const NumRigs& num_rigs) {
+  const std::vector<MotionUnderTrial> motions = ReadMotionsUnderTrial(options);
+  EvaluationPart part;
+  part.title = title;
+  std::vector<Table1> tables;
+  for (const Task task : TasksOf(options)) {
+    tables.push_back(EvaluateTable1({SettingOf(options, global, task, num_rigs), motions}));
+    part.text += Table1Text(tables.back());
+  }
+  part.result = ToValue(tables, kind);
+  part.plots = Table1Plots(tables);
+  part.files["trials.csv"] = TrialsCsv(tables);
+  return part;
+}
+
+}  // namespace
+
+EvaluationPart MakeTable1(const EvaluateOptions& options, const GlobalOptions& global,
+                          const NumRigs& num_rigs) {
+  return MakeTable("table1", "Table 1", options, global, num_rigs);
+}
+
+EvaluationPart MakeTable6(const EvaluateOptions& options, const GlobalOptions& global,
+                          const NumRigs& num_rigs) {
+  return MakeTable("table6", "Table 6", options, global, num_rigs);
+}
+
+EvaluationPart MakeFigure4(const EvaluateOptions& options, const GlobalOptions& global,
+                           const NumRigs& num_rigs) {
+  const ContestSetting setting =
+      SettingOf(options, global, OnlyTask(options, Task::kIntrinsic, "figure 4"), num_rigs);
+  if (setting.fixed_rig) {
+    throw InputError(
+        {"figure 4 varies the rigs' field of view", "", "--rig-file names one rig", "use --rigs"});
+  }
+  const Figure4 figure = EvaluateFigure4(setting, ReadMotionsUnderTrial(options));
+  const std::vector<Column> columns =
+      WithFirst({"hfov_rad", "field of view", "rad", ""}, kErrorColumns);
+  EvaluationPart part;
+  part.title = "Figure 4";
+  part.result = ToValue(figure);
+  part.text = RowsText(part.result, columns);
+  AddCharts(columns, ChartsOf(figure), &part);
+  return part;
+}
+
+EvaluationPart MakeFigure5(const EvaluateOptions& options, const GlobalOptions& global,
+                           const NumRigs& num_rigs) {
+  const ContestSetting setting =
+      SettingOf(options, global, OnlyTask(options, Task::kExtrinsic, "figure 5"), num_rigs);
+  const Table1 table = EvaluateTable1({setting, ReadMotionsUnderTrial(options)});
+  EvaluationPart part;
+  part.title = "Figure 5";
+  part.result = Figure5Value(table);
+  part.text = RowsText(part.result, kErrorColumns);
+  AddCharts(kErrorColumns, Figure5Charts(table), &part);
+  return part;
+}
+
+EvaluationPart MakeFigure7(const EvaluateOptions& options, const GlobalOptions& global,
+                           const NumRigs& num_rigs) {
+  const ContestSetting setting =
+      SettingOf(options, global, OnlyTask(options, Task::kExtrinsic, "figure 7"), num_rigs);
+  const Figure7 figure = EvaluateFigure7(setting, ReadMotionsUnderTrial(options));
+  const std::vector<Column> columns = {
+      {"policy", "motion", "", ""},
+      {"reprojection_rms_px", "reprojection", "px", ""},
+      {"gyro_rms_normalised", "gyroscope residuals over noise", "", ""},
+      {"accel_rms_normalised", "accelerometer residuals over noise", "", ""},
+      {"gyro_bias_error_rad_s", "gyroscope bias error", "rad/s", ""},
+      {"accel_bias_error_m_s2", "accelerometer bias error", "m/s²", ""}};
+  EvaluationPart part;
+  part.title = "Figure 7";
+  part.result = ToValue(figure);
+  part.text = RowsText(part.result, columns);
+  AddCharts(columns, ChartsOf(figure), &part);
+  return part;
+}
+
+EvaluationPart MakePareto(const EvaluateOptions& options, const GlobalOptions& global,
+                          const NumRigs& num_rigs) {
+  const std::vector<MotionUnderTrial> motions = ReadMotionsUnderTrial(options);
+  std::vector<Pareto> tasks;
+  for (const Task task : TasksOf(options)) {
+    tasks.push_back(EvaluatePareto(SettingOf(options, global, task, num_rigs), motions));
+  }
+  std::vector<Column> columns = WithFirst({"num_loops", "loops", "", ""}, kErrorColumns);
+  columns = WithFirst({"scale", "scale", "", ""}, std::move(columns));
+  EvaluationPart part;
+  part.title = "Error against budget";
+  part.result = ToValue(tasks);
+  part.text = RowsText(part.result, columns);
+  AddCharts(columns, ChartsOf(tasks), &part);
+  return part;
+}
+
+EvaluationPart MakeRivals(const EvaluateOptions& options, const GlobalOptions& global,
+                          const NumRigs& num_rigs) {
+  const std::vector<MotionUnderTrial> motions = ReadMotionsUnderTrial(options);
+  std::vector<OutsideEstimator> outside;
+  for (const std::string& path : options.outside) {
+    std::vector<std::string> warnings;
+    outside.push_back(OutsideEstimatorFromValue(ReadYaml(path), &warnings));
+    PrintWarnings(warnings);
+  }
+  std::vector<Rivals> tasks;
+  EvaluationPart part;
+  for (const Task task : TasksOf(options)) {
+    tasks.push_back(
+        EvaluateRivals(SettingOf(options, global, task, num_rigs), motions,
+                       task == Task::kExtrinsic ? outside : std::vector<OutsideEstimator>()));
+    for (const auto& [estimator, seconds] : tasks.back().seconds) {
+      part.seconds[TaskName(task) + "_" + estimator + "_s"] = seconds;
+    }
+  }
+  const std::vector<Column> columns = WithFirst({"estimator", "estimator", "", ""}, kErrorColumns);
+  part.title = "Estimators compared";
+  part.result = ToValue(tasks);
+  part.text = RowsText(part.result, columns);
+  AddCharts(columns, ChartsOf(tasks), &part);
+  return part;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,69 @@
+#include "calibrato/cli/learn_best.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/cli/command.h"
+#include "calibrato/cli/parse.h"
+#include "calibrato/learning/design_learner.h"
+#include "calibrato/mdp/design_setting.h"
+
+namespace calibrato {
+namespace {
+
+constexpr int kNumEpisodes = 96;
+
+void RefuseWhatThePaperAlone(const LearnSetting& setting) {
+  if (!setting.mistakes.empty() || setting.reward != "error") {
+    throw InputError({"preset best has neither mistakes nor rewards to choose", "",
+                      "it learns where expected information fails",
+                      "use --preset paper, or leave out --mistakes and --reward"});
+  }
+}
+
+}  // namespace
+
+LearnResult LearnBest(const LearnBestArguments& arguments) {
+  const LearnSetting& setting = arguments.setting;
+  RefuseWhatThePaperAlone(setting);
+  const Rng rng(arguments.seed);
+  const Fidelity fidelity = FidelityFromName(setting.fidelity);
+  std::vector<Rig> believed;
+  std::function<Rig(uint64_t)> rig_of_episode;
+  if (std::filesystem::is_regular_file(setting.rigs)) {
+    const Rig rig = AsEstimated(ReadRig(setting.rigs));
+    believed = {rig};
+    rig_of_episode = [rig](uint64_t) { return rig; };
+  } else {
+    const RigDistribution rigs = RigDistributionFromName(setting.rigs);
+    believed = BelievedRigs(rigs, arguments.design.num_believed, rng);
+    rig_of_episode = [rigs, rng](uint64_t index) {
+      Rng draw = rng.Stream("episode rig", index);
+      return DrawRig(rigs, draw);
+    };
+  }
+
+  DesignLearnOptions options;
+  options.carrier = CarrierFromName(setting.carrier);
+  options.problem = MakeDesignProblem(TaskFromName(setting.task), options.carrier,
+                                      std::move(believed), arguments.design);
+  if (arguments.num_episodes == 0) {
+    options.num_episodes = kNumEpisodes;
+  } else {
+    options.num_episodes = arguments.num_episodes;
+    options.episodes_per_round = std::min(options.episodes_per_round, arguments.num_episodes);
+  }
+  options.seed = arguments.seed;
+  options.resume = arguments.resume;
+  options.environment = "rigs " + setting.rigs + ", fidelity " + setting.fidelity;
+  const MotionDesignProblem& problem = options.problem;
+  const Judge judge = [&](const TimedMotion& motion, uint64_t index) {
+    return JudgeMotion(problem.task, rig_of_episode(index), motion, fidelity, problem.criterion,
+                       rng.Stream("episode noise", index));
+  };
+  NoteInterruptions();
+  return LearnByDesign(options, judge, arguments.out, &InterruptRequested());
+}
+
+}  // namespace calibrato

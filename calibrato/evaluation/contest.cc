@@ -1,0 +1,93 @@
+#include "calibrato/evaluation/contest.h"
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
+#include "calibrato/base/progress.h"
+#include "calibrato/motion/paper_scene.h"
+#include "calibrato/simulation/headless_gl.h"
+
+namespace calibrato {
+namespace {
+
+// Keeps the rigs of trials apart from those of training under the same seed.
+constexpr const char* kRigPurpose = "evaluation rig";
+constexpr const char* kNoisePurpose = "evaluation noise";
+
+// What fails here fails for every trial.
+void CheckFidelity(const ContestSetting& setting) {
+  if (setting.fidelity == Fidelity::kPhysical && setting.carrier != Carrier::kArm) {
+    throw InputError({"fidelity physical is that of an arm", "",
+                      "the carrier '" + CarrierName(setting.carrier) + "' has no dynamics",
+                      "use --carrier arm, or --fidelity fast"});
+  }
+  if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
+}
+
+}  // namespace
+
+std::vector<Rig> RigsUnderTrial(const ContestSetting& setting) {
+  const auto num_rigs = static_cast<size_t>(setting.num_rigs);
+  if (setting.fixed_rig) return std::vector<Rig>(num_rigs, *setting.fixed_rig);
+  const Rng rng(setting.seed);
+  return ParallelMap<Rig>(num_rigs, [&](size_t i) {
+    Rng draws = rng.Stream(kRigPurpose, i);
+    return DrawRig(setting.rigs, draws);
+  });
+}
+
+Rig PlanningScene(const ContestSetting& setting) {
+  return setting.fixed_rig ? *setting.fixed_rig : PaperRig();
+}
+
+std::string RigsName(const ContestSetting& setting) {
+  return setting.fixed_rig ? "file" : RigDistributionName(setting.rigs);
+}
+
+ContestTrials RunContest(const ContestSetting& setting, const std::vector<Rig>& rigs,
+                         const std::vector<Contestant>& contestants) {
+  CheckFidelity(setting);
+  const Rng rng(setting.seed);
+  Progress progress("evaluating", static_cast<int64_t>(rigs.size()));
+  // Of one rig: all members of all contestants, one after the other.
+  const auto of_rigs = ParallelMap<std::vector<Trial>>(rigs.size(), [&](size_t i) {
+    const Rng noise = rng.Stream(kNoisePurpose, i);
+    std::vector<Trial> trials;
+    for (const Contestant& contestant : contestants) {
+      for (size_t m = 0; m < contestant.num_members(); ++m) {
+        trials.push_back(
+            RunTrial(setting.task, rigs[i], contestant.MotionFor(m, i), setting.fidelity, noise));
+      }
+    }
+    progress.Advance();
+    return trials;
+  });
+  ContestTrials contest;
+  size_t next = 0;
+  for (const Contestant& contestant : contestants) {
+    std::vector<std::vector<Trial>>& members = contest.emplace_back();
+    for (size_t m = 0; m < contestant.num_members(); ++m, ++next) {
+      std::vector<Trial>& trials = members.emplace_back();
+      for (const std::vector<Trial>& of_rig : of_rigs) trials.push_back(of_rig[next]);
+    }
+  }
+  return contest;
+}
+
+Figures FiguresOf(const std::vector<std::vector<Trial>>& trials, double Trial::*figure) {
+  Figures figures;
+  for (const std::vector<Trial>& member : trials) {
+    std::vector<double>& values = figures.emplace_back();
+    for (const Trial& trial : member) values.push_back(trial.*figure);
+  }
+  return figures;
+}
+
+int NumFailures(const std::vector<std::vector<Trial>>& trials) {
+  int count = 0;
+  for (const std::vector<Trial>& member : trials) {
+    for (const Trial& trial : member) count += trial.failure.empty() ? 0 : 1;
+  }
+  return count;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,95 @@
+#include "calibrato/evaluation/contestant.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "calibrato/base/parallel.h"
+
+namespace calibrato {
+namespace {
+
+PlannedMotion Planned(TimedMotion timed) {
+  PlannedMotion planned;
+  planned.path = PlannedPath(timed);
+  planned.path_length_m = PathLength(timed.motion);
+  planned.path_length_original_m = PathLengthOriginal(timed.motion);
+  planned.scale = timed.scale;
+  planned.timed = std::move(timed);
+  return planned;
+}
+
+}  // namespace
+
+PlannedMotion Plan(Motion motion, Carrier carrier, const Rig& scene) {
+  motion.carrier = carrier;
+  return Planned(PlanScaledToFit(motion, scene));
+}
+
+PlannedMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene) {
+  PlannedMotion planned;
+  planned.path = PathAlong(trajectory, scene);
+  planned.path_length_m = PathLength(planned.path);
+  planned.path_length_original_m = std::numeric_limits<double>::quiet_NaN();
+  return planned;
+}
+
+PlannedMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
+  if (const auto* looped = std::get_if<Motion>(&motion.way)) return Plan(*looped, carrier, scene);
+  return Plan(std::get<RecordedTrajectory>(motion.way), scene);
+}
+
+double Contestant::mean_path_length_m() const {
+  double sum = 0.0;
+  for (const PlannedMotion& motion : motions) sum += motion.path_length_m;
+  return sum / static_cast<double>(motions.size());
+}
+
+Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& rigs,
+                            const Rng& rng) {
+  Contestant random{"random", {}, true};
+  random.motions = ParallelMap<PlannedMotion>(rigs.size(), [&](size_t i) {
+    Rng draws = rng.Stream("evaluation motion", i);
+    return Plan(RandomMotion(task, draws), carrier, rigs[i]);
+  });
+  return random;
+}
+
+Contestant FixedContestant(const std::string& policy, const Motion& motion, Carrier carrier,
+                           const Rig& scene) {
+  return {policy, {Plan(motion, carrier, scene)}, false};
+}
+
+std::vector<Contestant> BroughtContestants(const std::vector<MotionUnderTrial>& motions, Task task,
+                                           Carrier carrier, const Rig& scene) {
+  std::vector<Contestant> contestants;
+  for (const MotionUnderTrial& motion : motions) {
+    if (motion.task && *motion.task != task) continue;
+    auto same = std::find_if(contestants.begin(), contestants.end(), [&](const Contestant& other) {
+      return other.policy == motion.policy;
+    });
+    if (same == contestants.end()) {
+      contestants.push_back({motion.policy, {}, false});
+      same = contestants.end() - 1;
+    }
+    same->motions.push_back(Plan(motion, carrier, scene));
+  }
+  return contestants;
+}
+
+Contestant AtPathLength(const Contestant& contestant, const std::string& policy,
+                        double path_length_m, Carrier carrier,
+                        const std::function<const Rig&(size_t motion)>& scene) {
+  Contestant scaled = contestant;
+  scaled.policy = policy;
+  scaled.motions = ParallelMap<PlannedMotion>(contestant.motions.size(), [&](size_t i) {
+    const PlannedMotion& planned = contestant.motions[i];
+    if (!planned.timed || !(planned.path_length_m > 0.0)) return planned;
+    Motion motion = planned.timed->motion;
+    for (Loop& loop : motion.loops) loop.coefficients *= path_length_m / planned.path_length_m;
+    return Plan(std::move(motion), carrier, scene(i));
+  });
+  return scaled;
+}
+
+}  // namespace calibrato

@@ -1,0 +1,290 @@
+#include "calibrato/learning/design_learner.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "calibrato/base/files.h"
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
+#include "calibrato/base/progress.h"
+#include "calibrato/learning/gaussian_process.h"
+
+namespace calibrato {
+namespace {
+
+// Of the two functions of the trust. The expected loss is known without noise, and moves by tenths
+// over the whole range; how far it is off may move as much.
+constexpr GaussianProcessOptions kExpectation{
+    .length_scale = 1.0, .signal_stddev = 0.5, .noise_stddev = 0.02};
+constexpr double kLengthScale = 0.7;
+constexpr double kErrorStddev = 0.3;
+constexpr int kNumCandidates = 512;
+
+// Standard deviation of half the logarithm of the pooled NEES, whose relative one is sqrt(2 / dof).
+double NoiseOf(const DesignRound& round) {
+  double dimension = 0.0;
+  for (const MotionJudgement& it : round.judgements) dimension += it.nees_dimension;
+  return 0.5 * std::sqrt(2.0 / std::max(1.0, dimension));
+}
+
+// What is believed of the loss at any trust, from the rounds so far.
+class LossModel {
+ public:
+  explicit LossModel(const std::vector<DesignRound>& rounds)
+      : base_(rounds.front().expected_loss),
+        expected_(Points(rounds), Expected(rounds, base_), kExpectation),
+        error_(Points(rounds), Errors(rounds),
+               {.length_scale = kLengthScale,
+                .signal_stddev = kErrorStddev,
+                .noise_stddev = NoiseOf(rounds.front())}) {}
+
+  [[nodiscard]] double Hopeful(const Trust& trust) const {
+    const Belief expected = expected_.At(trust);
+    const Belief error = error_.At(trust);
+    return expected.mean + error.mean - std::hypot(expected.stddev, error.stddev);
+  }
+  // Of a round that was played: its expectation is known.
+  [[nodiscard]] double Believed(const DesignRound& round) const {
+    return round.expected_loss + error_.At(round.trust).mean;
+  }
+
+ private:
+  static Eigen::MatrixXd Points(const std::vector<DesignRound>& rounds) {
+    Eigen::MatrixXd points(Trust::RowsAtCompileTime, static_cast<Eigen::Index>(rounds.size()));
+    for (size_t i = 0; i < rounds.size(); ++i)
+      points.col(static_cast<Eigen::Index>(i)) = rounds[i].trust;
+    return points;
+  }
+  static Eigen::VectorXd Expected(const std::vector<DesignRound>& rounds, double base) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(rounds.size()));
+    for (size_t i = 0; i < rounds.size(); ++i)
+      values(static_cast<Eigen::Index>(i)) = rounds[i].expected_loss - base;
+    return values;
+  }
+  static Eigen::VectorXd Errors(const std::vector<DesignRound>& rounds) {
+    Eigen::VectorXd values(static_cast<Eigen::Index>(rounds.size()));
+    for (size_t i = 0; i < rounds.size(); ++i)
+      values(static_cast<Eigen::Index>(i)) = RealisedLoss(rounds[i]) - rounds[i].expected_loss;
+    return values;
+  }
+
+  double base_;
+  GaussianProcess expected_;
+  GaussianProcess error_;
+};
+
+// The second round draws all limits in halfway, so that there is something to compare; the others
+// go where the loss may be least.
+Trust NextTrust(const std::vector<DesignRound>& rounds, Rng rng) {
+  if (rounds.size() == 1) return Trust::Constant(0.5);
+  const LossModel model(rounds);
+  Trust best = Trust::Ones();
+  double best_loss = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kNumCandidates; ++i) {
+    Trust trust;
+    for (double& x : trust) x = rng.Uniform(0.0, 1.0);
+    const double loss = model.Hopeful(trust);
+    if (loss < best_loss) {
+      best_loss = loss;
+      best = trust;
+    }
+  }
+  return best;
+}
+
+size_t BestRound(const std::vector<DesignRound>& rounds) {
+  const LossModel model(rounds);
+  size_t best = 0;
+  for (size_t i = 1; i < rounds.size(); ++i) {
+    if (model.Believed(rounds[i]) < model.Believed(rounds[best])) best = i;
+  }
+  return best;
+}
+
+class DesignLearner {
+ public:
+  DesignLearner(const DesignLearnOptions& options, const Judge& judge, std::string folder)
+      : options_(options), judge_(judge), folder_(std::move(folder)), rng_(options.seed) {
+    result_.task = options.problem.task;
+    result_.preset = "best";
+    if (options.resume) {
+      progress_ = ReadDesignProgress(folder_, NameOfRun());
+    } else {
+      std::filesystem::create_directories(folder_);
+      Save();
+    }
+  }
+
+  LearnResult Run(const std::atomic<bool>* interrupt) {
+    const auto num_rounds =
+        static_cast<size_t>(std::max(1, options_.num_episodes / options_.episodes_per_round));
+    Progress progress("learning", static_cast<int>(num_rounds) * options_.episodes_per_round);
+    progress.Advance(static_cast<int>(progress_.rounds.size()) * options_.episodes_per_round);
+    while (progress_.rounds.size() < num_rounds) {
+      if (interrupt != nullptr && interrupt->load()) {
+        return Ended(LearnTermination::kInterrupted, "interrupted after episode " +
+                                                         std::to_string(NumEpisodes()) +
+                                                         "; continue with --resume");
+      }
+      PlayRound(&progress);
+    }
+    return Finish();
+  }
+
+ private:
+  [[nodiscard]] int NumEpisodes() const {
+    return static_cast<int>(progress_.rounds.size()) * options_.episodes_per_round;
+  }
+
+  // What the course of learning depends on.
+  [[nodiscard]] Value NameOfRun() const {
+    const MotionDesignProblem& problem = options_.problem;
+    return Value::Object()
+        .Set("task", TaskName(problem.task))
+        .Set("carrier", CarrierName(options_.carrier))
+        .Set("environment", options_.environment)
+        .Set("seed", std::to_string(options_.seed))
+        .Set("episodes_per_round", options_.episodes_per_round)
+        .Set("rigs", problem.rigs.size())
+        .Set("loops", problem.num_loops)
+        .Set("max_path_m", problem.max_path_m)
+        .Set("max_duration_s", problem.max_duration_s)
+        .Set("coefficient_limit", problem.coefficient_limit)
+        .Set("starts", options_.starts.num_starts)
+        .Set("evaluations_per_start", options_.starts.evaluations_per_start)
+        .Set("evaluations_of_best", options_.starts.evaluations_of_best)
+        .Set("robust_evaluations", options_.robust_evaluations)
+        .Set("evaluations_of_round", options_.evaluations_of_round);
+  }
+
+  void Save() const { WriteDesignProgress(folder_, NameOfRun(), progress_, options_.problem.task); }
+
+  // For the nominal rig from many starts, then for all rigs.
+  Motion FirstDesign() {
+    MotionDesignProblem nominal = options_.problem;
+    nominal.rigs.resize(1);
+    std::optional<MotionDesign> design =
+        DesignFromManyStarts(nominal, options_.starts, rng_.Stream("starts"));
+    if (!design) {
+      throw InputError({"nothing to learn from", "",
+                        "no motion within these limits shows the board",
+                        "allow a longer path or more time"});
+    }
+    progress_.num_information_evaluations += design->num_information_evaluations;
+    return DesignedFrom(design->motion, options_.problem, options_.robust_evaluations);
+  }
+
+  Motion DesignedFrom(const Motion& start, const MotionDesignProblem& problem, int evaluations) {
+    const std::optional<MotionDesign> design = DesignMotion(problem, start, {evaluations});
+    if (!design) return start;
+    progress_.num_information_evaluations += design->num_information_evaluations;
+    return design->motion;
+  }
+
+  // As its carrier makes it. The arm's time law may need longer than the design thought: then the
+  // design is told to hurry less.
+  TimedMotion Planned(Motion motion, MotionDesignProblem problem) {
+    constexpr int kMaxAttempts = 4;
+    for (int attempt = 0;; ++attempt) {
+      motion.carrier = options_.carrier;
+      auto planned = PlanMotion(motion, problem.rigs.front());
+      TimedMotion timed = std::holds_alternative<TimedMotion>(planned)
+                              ? std::get<TimedMotion>(std::move(planned))
+                              : PlanScaledToFit(motion, problem.rigs.front());
+      const double excess = timed.duration_s() / problem.max_duration_s;
+      if (excess <= 1.001 || attempt == kMaxAttempts) return timed;
+      problem.limits.speed /= excess;
+      problem.limits.angular_speed /= excess;
+      problem.limits.acceleration /= excess * excess;
+      problem.limits.angular_acceleration /= excess * excess;
+      motion = DesignedFrom(timed.motion, problem, options_.evaluations_of_round);
+    }
+  }
+
+  void PlayRound(Progress* progress) {
+    DesignRound round;
+    const size_t index = progress_.rounds.size();
+    if (index == 0) {
+      round.motion = Planned(FirstDesign(), options_.problem);
+    } else {
+      round.trust = NextTrust(progress_.rounds, rng_.Stream("trust", index));
+      const MotionDesignProblem problem = Within(options_.problem, LimitsOf(round.trust));
+      const Motion& start = progress_.rounds[BestRound(progress_.rounds)].motion.motion;
+      round.motion = Planned(DesignedFrom(start, problem, options_.evaluations_of_round), problem);
+    }
+    Motion executed = round.motion.motion;
+    for (size_t i = 0; i < executed.loops.size(); ++i) {
+      executed.loops[i].duration_s = round.motion.loop_duration_s[i];
+    }
+    round.expected_loss = ExpectLoss(options_.problem, executed).value;
+    progress_.num_information_evaluations += static_cast<int64_t>(options_.problem.rigs.size());
+    round.judgements = ParallelMap<MotionJudgement>(
+        static_cast<size_t>(options_.episodes_per_round), [&](size_t i) {
+          MotionJudgement judgement = judge_(round.motion, i);
+          progress->Advance();
+          return judgement;
+        });
+    progress_.rounds.push_back(std::move(round));
+    Save();
+  }
+
+  LearnResult Ended(LearnTermination termination, std::string text) {
+    result_.num_episodes = NumEpisodes();
+    result_.num_calibrations = NumEpisodes();
+    result_.num_information_evaluations = progress_.num_information_evaluations;
+    result_.best_return = -std::numeric_limits<double>::infinity();
+    for (const DesignRound& round : progress_.rounds) {
+      result_.best_return = std::max(result_.best_return, -RealisedLoss(round));
+    }
+    result_.termination = termination;
+    result_.termination_text = std::move(text);
+    return result_;
+  }
+
+  LearnResult Finish() {
+    const size_t best = BestRound(progress_.rounds);
+    const DesignRound& round = progress_.rounds[best];
+    result_.motion = round.motion.motion;
+    for (size_t i = 0; i < result_.motion.loops.size(); ++i) {
+      result_.motion.loops[i].duration_s = round.motion.loop_duration_s[i];
+    }
+    result_.motion.provenance = Value::Object()
+                                    .Set("method", "learned")
+                                    .Set("task", TaskName(result_.task))
+                                    .Set("preset", "best")
+                                    .Set("seed", std::to_string(options_.seed))
+                                    .Set("episodes", NumEpisodes())
+                                    .Set("round", best + 1)
+                                    .Set("trusted", ToValue(LimitsOf(round.trust)));
+    WriteDesignPolicy(folder_ + "/policy", NameOfRun(), result_.motion);
+    char text[200];
+    std::snprintf(text, sizeof(text), "done: %d episodes; the motion of round %zu of %zu, %s",
+                  NumEpisodes(), best + 1, progress_.rounds.size(),
+                  best == 0 ? "the design that trusts the model: learning added nothing to it"
+                            : "which learning preferred to the design that trusts the model");
+    return Ended(LearnTermination::kDone, text);
+  }
+
+  const DesignLearnOptions& options_;
+  const Judge& judge_;
+  std::string folder_;
+  Rng rng_;
+  DesignProgress progress_;
+  LearnResult result_;
+};
+
+}  // namespace
+
+LearnResult LearnByDesign(const DesignLearnOptions& options, const Judge& judge,
+                          const std::string& folder, const std::atomic<bool>* interrupt) {
+  assert(!options.problem.rigs.empty() && options.episodes_per_round >= 1);
+  return DesignLearner(options, judge, folder).Run(interrupt);
+}
+
+}  // namespace calibrato

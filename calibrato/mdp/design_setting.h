@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "calibrato/base/rng.h"
+#include "calibrato/motion/carrier.h"
+#include "calibrato/motion/motion.h"
+#include "calibrato/sensors/rig.h"
+#include "calibrato/simulation/rig_distribution.h"
+
+// What a MotionDesignProblem is usually made of.
+
+namespace calibrato {
+
+/// The rig with its camera as the intrinsic task estimates it: pinholes with all five distortion
+/// parameters (those it lacks 0), other lenses as they are.
+[[nodiscard]] Rig AsEstimated(Rig rig);
+
+/// What a distribution lets one believe: the paper's nominal rig, then draws, as estimated.
+/// @param num_draws  >= 0
+[[nodiscard]] std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws,
+                                            const Rng& rng);
+
+/// What a motion takes.
+struct MotionBudget {
+  double path_m = 0.0;      ///< path_length_m [m]
+  double duration_s = 0.0;  ///< [s]
+};
+/// Of a motion as its carrier makes it: stretched, and shrunk where it does not fit.
+/// @throws InputError if it fits at no scale.
+[[nodiscard]] MotionBudget BudgetOf(const Motion& motion, const Rig& rig);
+
+}  // namespace calibrato
