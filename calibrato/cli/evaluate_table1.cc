@@ -84,7 +84,9 @@ Action SetUpEvaluateTable1(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--motion", options->motions, "MOTION.yaml files of others, a row each");
   app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
   app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
-  app.add_option("--rigs", options->rigs, "paper or paper-undistorted")->capture_default_str();
+  app.add_option("--rigs", options->rigs,
+                 "paper, paper-undistorted, broad, paper-real or broad-real")
+      ->capture_default_str();
   CLI::Option* num_rigs =
       app.add_option("--num-rigs", options->num_rigs, "How many rigs each policy is tried on")
           ->check(CLI::Range(2, 1000000))

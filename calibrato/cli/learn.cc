@@ -122,7 +122,8 @@ Action SetUpLearn(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--preset", options->preset, "paper")->capture_default_str();
   app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
   app.add_option("--fidelity", options->fidelity, "fast")->capture_default_str();
-  app.add_option("--rigs", options->rigs, "paper, paper-undistorted, or a RIG.yaml")
+  app.add_option("--rigs", options->rigs,
+                 "paper, paper-undistorted, broad, paper-real, broad-real, or a RIG.yaml")
       ->capture_default_str();
   app.add_option("--episodes", options->episodes, "Episodes of four loops each")
       ->check(CLI::Range(2, 1000000))

@@ -13,6 +13,7 @@
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
 #include "calibrato/recording/video_writer.h"
+#include "calibrato/sensors/effects.h"
 #include "calibrato/simulation/outside_view.h"
 #include "calibrato/simulation/simulated_recording.h"
 #include "calibrato/simulation/simulated_run.h"
@@ -29,6 +30,7 @@ struct Options {
   std::string carrier;
   std::string fidelity = "fast";
   bool scale_to_fit = false;
+  std::string effects;
   bool video = false;
   std::string out;
 };
@@ -86,7 +88,8 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
                       "a recording is not replaced unasked", "choose another name or add --force"});
   }
   OutputFolder out(options.out);
-  const Rig rig = ReadRig(options.rig);
+  Rig rig = ReadRig(options.rig);
+  if (!options.effects.empty()) SwitchOnEffects(options.effects, &rig);
   Motion motion = ReadMotion(options.motion);
   if (!options.carrier.empty()) motion.carrier = CarrierFromName(options.carrier);
 
@@ -127,6 +130,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       .Set("num_out_of_image", run.frames.num_out_of_image)
       .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
       .Set("num_imu_samples", run.imu.stream.gyro.size())
+      .Set("num_dropped", run.frames.num_dropped)
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
       .Set("path_length_m", PathLength(timed.motion));
@@ -159,6 +163,9 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");
   app.add_flag("--video", options->video,
+  app.add_option("--effects", options->effects,
+                 "What real arms, cameras and IMUs do, switched on at its ordinary size: all, or "
+                 "names separated by commas (docs/simulation.md)");
                "Also video.avi: the arm from outside and the camera's view");
   app.add_option("--out", options->out, "Folder for the recording")->required();
   return [options, &global] { return RunSimulate(*options, global); };

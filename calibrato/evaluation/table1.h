@@ -37,6 +37,7 @@ struct Trial {
   double path_length_m = 0.0;
   double path_length_original_m = 0.0;
   double motion_s = 0.0;
+  double scale = 1.0;  ///< By which the motion was shrunk to fit the carrier.
 };
 
 /// A row of the table; means are over the converged trials.

@@ -61,8 +61,9 @@ struct ExtrinsicTask {
 [[nodiscard]] double InformationStatus(DesignCriterion criterion,
                                        const Eigen::Matrix<double, 6, 6>& covariance);
 
-/// The extrinsic task: three loops, after each of which camera and IMU are calibrated anew from
-/// everything recorded so far, the camera's intrinsics being known.
+/// The extrinsic task: around the base pose before the board that was drawn (BasePoseBeforeBoard;
+/// before a fixed rig's the paper's base pose), three loops, after each of which camera and IMU are
+/// calibrated anew from everything recorded so far, the camera's intrinsics being known.
 ///
 /// Observation, 12 numbers: the estimate's difference to the prior mean [rotation, translation] in
 /// the prior's sigmas, then half the logarithms of the six eigenvalues, ascending, of the
@@ -98,6 +99,7 @@ class ExtrinsicEnvironment final : public Environment {
   // One episode:
   Rng noise_{0};
   Rig rig_;
+  BasePose base_pose_;
   int num_steps_ = 0;
   int num_frames_ = 0;
   Time now_;

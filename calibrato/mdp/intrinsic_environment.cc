@@ -1,11 +1,13 @@
 #include "calibrato/mdp/intrinsic_environment.h"
 
 #include <cassert>
+#include <set>
 
 namespace calibrato {
 namespace {
 
 constexpr double kBorderPx = 8.0;
+constexpr int kFewestCorners = 4;        // determine a pose
 constexpr double kBonusError = 0.01;     // [-]
 constexpr double kMaxFocalSigma = 0.05;  // sigma(f) / f [-]
 
@@ -21,12 +23,37 @@ bool IsDetermined(const CameraCalibration& calibration) {
 
 }  // namespace
 
-std::vector<BoardView> FramesThatCount(std::vector<BoardView> views, Resolution resolution) {
+std::string IntrinsicTaskModel(const CameraModel& lens) {
+  const bool is_pinhole =
+      lens.name().starts_with("pinhole-radtan") || lens.name() == "pinhole-none";
+  return is_pinhole ? kIntrinsicTaskModel : std::string(lens.name());
+}
+
+std::vector<BoardView> FramesThatCount(std::vector<BoardView> views, Resolution resolution,
+                                       const Board& board) {
   const Eigen::Array2d high(resolution.width - 1 - kBorderPx, resolution.height - 1 - kBorderPx);
-  std::erase_if(views, [&](const BoardView& view) {
-    return !((view.pixels.array() >= kBorderPx).all() &&
-             (view.pixels.rowwise().maxCoeff().array() <= high).all());
-  });
+  const int points_per_part = PointsPerPart(board);
+  for (BoardView& view : views) {
+    std::set<int> broken_parts;
+    for (Eigen::Index k = 0; k < view.num_corners(); ++k) {
+      const Eigen::Array2d pixel = view.pixels.col(k);
+      const bool is_inside = (pixel >= kBorderPx).all() && (pixel <= high).all();
+      if (!is_inside) broken_parts.insert(view.corner_ids[k] / points_per_part);
+    }
+    if (broken_parts.empty()) continue;
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index k = 0; k < view.num_corners(); ++k) {
+      if (!broken_parts.contains(view.corner_ids[k] / points_per_part)) kept.push_back(k);
+    }
+    view.corner_ids = [&] {
+      std::vector<int> ids;
+      for (const Eigen::Index k : kept) ids.push_back(view.corner_ids[k]);
+      return ids;
+    }();
+    view.pixels = Eigen::Matrix2Xd(view.pixels(Eigen::all, kept));
+    view.points_g = Eigen::Matrix3Xd(view.points_g(Eigen::all, kept));
+  }
+  std::erase_if(views, [](const BoardView& view) { return view.num_corners() < kFewestCorners; });
   return views;
 }
 
@@ -41,6 +68,7 @@ Eigen::VectorXd IntrinsicEnvironment::Reset(const Rng& rng) {
     Rng rigs = rng.Stream("rig");
     rig_ = DrawRig(task_.rigs, rigs);
   }
+  base_pose_ = task_.fixed_rig ? BasePose() : BasePoseBeforeBoard(rig_);
   noise_ = rng.Stream("noise");
   num_steps_ = 0;
   now_ = Time();
@@ -58,6 +86,7 @@ StepResult IntrinsicEnvironment::Step(const LoopCoefficients& action) {
   const IntrinsicRewardWeights& weights = task_.weights;
   Motion motion;
   motion.carrier = task_.carrier;
+  motion.base_pose = base_pose_;
   motion.loops.push_back({ScaledAction(action), 5.0});
   // Each loop has noise of its own, whatever became of the loops before it.
   Rng loop_noise = noise_.Stream("loop", static_cast<uint64_t>(num_steps_));
@@ -73,13 +102,14 @@ StepResult IntrinsicEnvironment::Step(const LoopCoefficients& action) {
     const Camera& camera = rig_.cameras.front();
     SimulatedFrames frames = SimulateFrames(rig_, *timed, now_, loop_noise);
     now_ = now_ + Duration::FromSeconds(timed->duration_s());
-    for (BoardView& view : FramesThatCount(std::move(frames.views), camera.resolution)) {
+    for (BoardView& view :
+         FramesThatCount(std::move(frames.views), camera.resolution, rig_.board)) {
       views_.push_back(std::move(view));
     }
     const double coverage_before = coverage_.sum();
     const double error_before = relative_error_;
     CameraProblem problem;
-    problem.model = kIntrinsicTaskModel;
+    problem.model = IntrinsicTaskModel(camera.model);
     problem.resolution = camera.resolution;
     problem.views = views_;
     const CameraCalibration calibration = CalibrateCamera(problem, kMaxIterations);

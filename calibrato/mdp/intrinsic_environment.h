@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calibrato/calibration/camera_calibration.h"
@@ -32,16 +33,22 @@ struct IntrinsicTask {
 /// The camera model that the intrinsic task estimates: OpenCV's default, as in the paper.
 inline constexpr const char* kIntrinsicTaskModel = "pinhole-radtan5";
 
-/// Frames that count in the intrinsic task: every corner at least 8 px inside the image.
+/// ... of this camera: the rig's own where it is a fisheye.
+[[nodiscard]] std::string IntrinsicTaskModel(const CameraModel& lens);
+
+/// Frames that count in the intrinsic task: every corner at least 8 px inside the image. Of an
+/// AprilGrid the tags count, and of a ChArUco board the corners, that are; a frame of fewer than
+/// four corners does not.
 [[nodiscard]] std::vector<BoardView> FramesThatCount(std::vector<BoardView> views,
-                                                     Resolution resolution);
+                                                     Resolution resolution, const Board& board);
 
 /// ||[fu fv pu pv] - truth|| / ||truth||: the paper's relative error [-].
 [[nodiscard]] double RelativeIntrinsicError(const Eigen::Vector4d& estimate,
                                             const Eigen::Vector4d& truth);
 
-/// The intrinsic task: four loops, after each of which the camera is calibrated anew from all
-/// frames that count so far.
+/// The intrinsic task: around the base pose before the board that was drawn (BasePoseBeforeBoard;
+/// before a fixed rig's the paper's base pose), four loops, after each of which the camera is
+/// calibrated anew from all frames that count so far.
 ///
 /// Observation, 8 numbers: the estimate of fu fv pu pv over its prior mean, then the progress of X,
 /// Y, size and skew. Before any data, and while the data do not determine the camera (fewer than
@@ -66,6 +73,7 @@ class IntrinsicEnvironment final : public Environment {
   // One episode:
   Rng noise_{0};
   Rig rig_;
+  BasePose base_pose_;
   int num_steps_ = 0;
   Time now_;
   std::vector<BoardView> views_;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
@@ -123,18 +125,87 @@ TEST(IntrinsicEnvironment, IsTheSameForTheSameStream) {
   EXPECT_EQ(a.Step(action).observation, b.Step(action).observation);
 }
 
+TEST(IntrinsicEnvironment, RefusesAnActionThatIsNoNumberOrOutOfReach) {
+  for (const double bad : {std::nan(""), 10.0}) {
+    IntrinsicEnvironment environment({});
+    const Eigen::VectorXd before = environment.Reset(Rng(1));
+    LoopCoefficients action = Still();
+    action(7) = bad;
+    const StepResult step = environment.Step(action);
+    EXPECT_FALSE(step.executed);
+    EXPECT_EQ(step.observation, before);
+    EXPECT_EQ(step.reward, IntrinsicRewardWeights().refusal);
+  }
+}
+
 TEST(FramesThatCount, AreEightPixelsInside) {
   BoardView view;
-  view.pixels.resize(2, 2);
+  view.corner_ids = {0, 1, 2, 3};
+  view.points_g = Eigen::Matrix3Xd::Zero(3, 4);
+  view.pixels.resize(2, 4);
   const auto counts = [&](double u, double v) {
-    view.pixels << 300.0, u, 200.0, v;
-    return !FramesThatCount({view}, {640, 480}).empty();
+    view.pixels << 300.0, 310.0, 320.0, u, 200.0, 210.0, 220.0, v;
+    return !FramesThatCount({view}, {640, 480}, PaperRig().board).empty();
   };
   EXPECT_TRUE(counts(8.0, 8.0));
   EXPECT_FALSE(counts(7.9, 8.0));
   EXPECT_TRUE(counts(631.0, 471.0));
   EXPECT_FALSE(counts(631.1, 471.0));
   EXPECT_FALSE(counts(631.0, 471.1));
+}
+
+// Tag 5 has a corner 7 px inside: its corners are left out, tags 2 and 7 stay. Alone, it leaves
+// nothing that counts.
+TEST(FramesThatCount, OfAnAprilGridTheTagsThatAreInside) {
+  const Board board = AprilGrid{6, 6, 0.088, 0.3};
+  const Eigen::Matrix3Xd points_g = BoardPoints(board);
+  const auto view_of = [&](const std::vector<int>& tags) {
+    BoardView view;
+    for (const int tag : tags) {
+      for (int corner = 0; corner < 4; ++corner) view.corner_ids.push_back(4 * tag + corner);
+    }
+    view.points_g = points_g(Eigen::all, view.corner_ids);
+    view.pixels = Eigen::Matrix2Xd::Constant(2, view.points_g.cols(), 100.0);
+    for (size_t k = 0; k < view.corner_ids.size(); ++k) {
+      view.pixels(1, static_cast<Eigen::Index>(k)) += view.corner_ids[k];
+      if (view.corner_ids[k] == 4 * 5 + 2) view.pixels(0, static_cast<Eigen::Index>(k)) = 7.0;
+    }
+    return view;
+  };
+  const std::vector<BoardView> counted =
+      FramesThatCount({view_of({2, 5, 7}), view_of({5}), view_of({3})}, {640, 480}, board);
+  ASSERT_EQ(counted.size(), 2u);
+  EXPECT_EQ(counted[0].corner_ids, std::vector<int>({8, 9, 10, 11, 28, 29, 30, 31}));
+  ASSERT_EQ(counted[0].pixels.cols(), 8);
+  EXPECT_EQ(counted[0].pixels(1, 4), 128.0);
+  EXPECT_EQ(counted[0].points_g, view_of({2, 7}).points_g);
+  EXPECT_EQ(counted[1].corner_ids, std::vector<int>({12, 13, 14, 15}));
+}
+
+TEST(IntrinsicTaskModel, IsThatOfOpenCvButForFisheyes) {
+  EXPECT_EQ(IntrinsicTaskModel(PaperRig().cameras[0].model), "pinhole-radtan5");
+  EXPECT_EQ(
+      IntrinsicTaskModel(CameraModel("pinhole-equi", Eigen::VectorXd::LinSpaced(8, 300, 301))),
+      "pinhole-equi");
+}
+
+// Four loops before boards of all kinds: some of each distribution's episodes end with a camera
+// that is far better known than before any data.
+TEST(IntrinsicEnvironment, CalibratesRigsOfAllKinds) {
+  IntrinsicTask task;
+  task.rigs = RigDistribution::kBroad;
+  IntrinsicEnvironment environment(task);
+  int num_better = 0;
+  for (uint64_t episode = 0; episode < 6; ++episode) {
+    (void)environment.Reset(Rng(episode));
+    const double before = environment.relative_error();
+    Rng actions = Rng(episode).Stream("actions");
+    for (int step = 0; step < environment.horizon(); ++step) {
+      (void)environment.Step(RandomAction(actions));
+    }
+    num_better += environment.relative_error() < 0.2 * before ? 1 : 0;
+  }
+  EXPECT_GE(num_better, 4);
 }
 
 }  // namespace
