@@ -40,6 +40,7 @@ Action SetUpBoard(CLI::App& app, const GlobalOptions& global);
 Action SetUpSimulate(CLI::App& app, const GlobalOptions& global);
 Action SetUpLearn(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateTable1(CLI::App& app, const GlobalOptions& global);
+Action SetUpExport(CLI::App& app, const GlobalOptions& global);
 Action SetUpCheck(CLI::App& app, const GlobalOptions& global);
 Action SetUpConvert(CLI::App& app, const GlobalOptions& global);
 Action SetUpNoise(CLI::App& app, const GlobalOptions& global);

@@ -38,6 +38,7 @@ const std::vector<Command> kCommands = {
     {{"evaluate", "table1"},
      "Learned, handcrafted and random motions on rigs never trained on",
      SetUpEvaluateTable1},
+    {{"export"}, "A motion as a robot's arm reads it, timed and checked", SetUpExport},
     {{"check"}, "What is wrong with a recording, before it is calibrated", SetUpCheck},
     {{"convert"}, "A recording as folder, ROS 1 bag or MCAP file, without loss", SetUpConvert},
     {{"noise"}, "Noise densities of an IMU from a log of it at rest", SetUpNoise},

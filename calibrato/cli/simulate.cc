@@ -28,9 +28,10 @@ struct Options {
   std::string rig;
   std::string motion;
   std::string carrier;
+  std::string timing;
   std::string fidelity = "fast";
-  bool scale_to_fit = false;
   std::string effects;
+  bool scale_to_fit = false;
   bool video = false;
   std::string out;
 };
@@ -92,13 +93,13 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   if (!options.effects.empty()) SwitchOnEffects(options.effects, &rig);
   Motion motion = ReadMotion(options.motion);
   if (!options.carrier.empty()) motion.carrier = CarrierFromName(options.carrier);
+  if (!options.timing.empty()) motion.timing = TimingFromName(options.timing);
 
   auto planned = PlanMotion(motion, rig);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) {
     if (!options.scale_to_fit) {
       throw InputError({"the carrier '" + CarrierName(motion.carrier) + "' can't make this motion",
-                        options.motion, refusal->Describe(),
-                        "make it smaller, or add --scale-to-fit"});
+                        options.motion, refusal->Describe(), refusal->remedy});
     }
     planned = PlanScaledToFit(motion, rig);
   }
@@ -129,8 +130,8 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       .Set(run.images.empty() ? "num_views" : "num_images", num_views)
       .Set("num_out_of_image", run.frames.num_out_of_image)
       .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
-      .Set("num_imu_samples", run.imu.stream.gyro.size())
       .Set("num_dropped", run.frames.num_dropped)
+      .Set("num_imu_samples", run.imu.stream.gyro.size())
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
       .Set("path_length_m", PathLength(timed.motion));
@@ -157,15 +158,17 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
   app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
   app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
+  app.add_option("--timing", options->timing,
+                 "quintic, or optimal (as fast as the carrier can); else the motion's own");
   app.add_option("--fidelity", options->fidelity,
                  "fast, physical (the arm's dynamics) or rendered (images too)")
       ->capture_default_str();
-  app.add_flag("--scale-to-fit", options->scale_to_fit,
-               "Shrink a motion that the carrier can't make, instead of refusing it");
-  app.add_flag("--video", options->video,
   app.add_option("--effects", options->effects,
                  "What real arms, cameras and IMUs do, switched on at its ordinary size: all, or "
                  "names separated by commas (docs/simulation.md)");
+  app.add_flag("--scale-to-fit", options->scale_to_fit,
+               "Shrink a motion that the carrier can't make, instead of refusing it");
+  app.add_flag("--video", options->video,
                "Also video.avi: the arm from outside and the camera's view");
   app.add_option("--out", options->out, "Folder for the recording")->required();
   return [options, &global] { return RunSimulate(*options, global); };
