@@ -73,6 +73,7 @@ void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* ju
   Rng rng(static_cast<uint64_t>(number));
   Rig rig = DrawTruth(rng);
   effect(&rig);
+  if (!FullSample()) rig.camera_rate_hz = 5.0;  // half the images to render
   Motion motion = HandcraftedMotion(Task::kExtrinsic);
   motion.carrier = Carrier::kArm;
   const SimulatedRun run =
@@ -84,6 +85,13 @@ void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* ju
   intrinsic.resolution = truth.resolution;
   intrinsic.views = Detected(run, rig);
   const CameraCalibration camera = CalibrateCamera(intrinsic);
+  if (camera.termination != Termination::kConverged) {
+    ++judgement->num_not_converged;
+    return;
+  }
+  judgement->corner_noise_px += camera.noise_stddev_px;
+  judgement->camera.Add(camera.model->focal_and_centre() - truth.model.focal_and_centre(),
+                        camera.covariance.topLeftCorner<4, 4>());
 
   CameraImuProblem extrinsic;
   extrinsic.cameras.push_back({truth.model, intrinsic.views, IntrinsicsKnowledge::kExact, {}});
@@ -92,14 +100,10 @@ void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* ju
   options.knot_spacing_s = 0.07;
   const CameraImuCalibration camera_imu = CalibrateCameraImu(extrinsic, options);
 
-  if (camera.termination != Termination::kConverged ||
-      camera_imu.termination != Termination::kConverged) {
+  if (camera_imu.termination != Termination::kConverged) {
     ++judgement->num_not_converged;
     return;
   }
-  judgement->corner_noise_px += camera.noise_stddev_px;
-  judgement->camera.Add(camera.model->focal_and_centre() - truth.model.focal_and_centre(),
-                        camera.covariance.topLeftCorner<4, 4>());
   const CameraCalibrationState& estimate = camera_imu.state->cameras.front();
   Eigen::VectorXd error(7);
   error << estimate.T_c_i.DifferenceTo(rig.T_c0_i),
@@ -122,16 +126,16 @@ Judgement Judge(const std::string& name, int num_rigs, const std::function<void(
   return judgement;
 }
 
-// The paper's effects alone: an ideal sensor of the paper's rigs, the IMU's noise. As many rigs
-// inside their 95 % ellipsoids as 16 of 20, and the sum of all squared errors within the 95 %
-// interval of chi-square with all their degrees of freedom.
+// The paper's effects alone: an ideal sensor of the paper's rigs, the IMU's noise. As large a share
+// of rigs inside their 95 % ellipsoids as 16 of 20, and the sum of all squared errors within the 95
+// % interval of chi-square with all their degrees of freedom.
 TEST(RenderedHonesty, OfBothEstimatorsOnThePapersRigs) {
-  const int n = FullSample() ? 60 : 3;
+  const int n = FullSample() ? 60 : 2;
   const Judgement judgement = Judge("paper", n, [](Rig*) {});
   EXPECT_EQ(judgement.num_not_converged, 0);
   for (const Honesty& honesty : {judgement.camera, judgement.camera_imu}) {
-    EXPECT_GE(honesty.num_inside, FullSample() ? 48 : 2);
-    const double above = ChiSquareTail(honesty.sum, honesty.degrees * n);
+    EXPECT_GE(honesty.num_inside, FullSample() ? 0.8 * honesty.num_rigs : 1);
+    const double above = ChiSquareTail(honesty.sum, honesty.degrees * honesty.num_rigs);
     // Three sigmas for the small sample.
     const double least = FullSample() ? 0.025 : 0.5 * kSignificance;
     EXPECT_GT(above, least);
