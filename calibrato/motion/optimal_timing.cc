@@ -67,8 +67,10 @@ std::optional<TimeLaw> SmoothedFastest(std::vector<PhaseLimits> limits) {
   if (!speeds) return std::nullopt;
   const std::vector<double> times = PassingTimes(*speeds);
   if (!std::isfinite(times.back())) return std::nullopt;
-  constexpr double kMaxStep = 0.01;  // [s]
-  const int num_steps = std::max(4, static_cast<int>(std::ceil(times.back() / kMaxStep)));
+  constexpr double kMaxStep = 0.01;          // [s]
+  constexpr double kMaxNumSteps = 10'000.0;  // slower loops get longer steps
+  const auto num_steps =
+      static_cast<int>(std::clamp(std::ceil(times.back() / kMaxStep), 4.0, kMaxNumSteps));
   // Half a support of the spline before and after: one step each.
   return TimeLaw{times.back() * (num_steps + 2) / num_steps,
                  ControlPoints(*speeds, times, num_steps)};

@@ -18,8 +18,9 @@ inline constexpr double kShortestLoop = 0.5;
 ///
 /// 1. the fastest motion along the path (fastest_phase.h) on a grid of 496 phases, its acceleration
 ///    bounded too, so that the phase takes 0.05 s at least to come up to its mean speed;
-/// 2. its phase at equal times at most 10 ms apart, taken as control points of a cubic B-spline:
-///    an average over 40 ms, which makes acceleration continuous and jerk finite;
+/// 2. its phase at equal times at most 10 ms apart (of loops beyond 100 s, a ten thousandth), taken
+///    as control points of a cubic B-spline: an average over 40 ms, which makes acceleration
+///    continuous and jerk finite;
 /// 3. stretched by the factor that `smallest_stretch` asks for: averaging moves acceleration to
 ///    where the path allows a little less, and jerk is not a limit of step 1.
 ///

@@ -44,6 +44,28 @@ TEST(FastestTimeLaw, OfOneJointIsTheTrapezoidButForItsSmoothing) {
   EXPECT_LT(law.duration_s, trapezoid_s + 0.03);
 }
 
+TEST(FastestTimeLaw, OfALoopOfMinutesHasNoMoreThanTenThousandPieces) {
+  // 1e-4 rad/s^2 of the phase: T = 2 sqrt(2 pi / 1e-4) = 501 s.
+  const auto limits_at = [](double) {
+    return PhaseLimits{1.0, {{1.0, 0.0, 1e-4}, {-1.0, 0.0, 1e-4}}};
+  };
+  const TimeLaw law = FastestTimeLaw(limits_at, [](const TimeLaw& law) {
+    return law.control_points.empty() ? 2000.0 : 1.0;  // the quintic needs 1000 s
+  });
+  EXPECT_EQ(law.control_points.size(), 10'005u);
+  EXPECT_NEAR(law.duration_s, 2.0 * std::sqrt(kTurn / 1e-4), 0.2);
+}
+
+TEST(FastestTimeLaw, OfALoopThatStandsStillTakesTheShortestTime) {
+  for (const Carrier carrier : {Carrier::kFree, Carrier::kArm}) {
+    Motion still;
+    still.carrier = carrier;
+    still.timing = Timing::kOptimal;
+    still.loops.resize(1);
+    EXPECT_EQ(std::get<TimedMotion>(PlanMotion(still, PaperRig())).duration_s(), kShortestLoop);
+  }
+}
+
 TEST(FastestTimeLaw, IsTheQuinticWhereNothingElseIsKnown) {
   // Rest is forbidden to the linear limits; the stretch knows better.
   const auto limits_at = [](double) { return PhaseLimits{1.0, {{0.0, 1.0, -1.0}}}; };
