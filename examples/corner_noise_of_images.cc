@@ -5,10 +5,12 @@
 //
 // One image a row; the fit on stderr.
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -169,6 +171,48 @@ CornerNoise Fitted(const std::vector<Measurement>& measurements) {
   return best;
 }
 
+// A logistic regression of which boards were found.
+struct LossFit {
+  Eigen::VectorXd weights;  // the first is of the constant
+  double log_likelihood = 0.0;
+};
+
+// Newton's method on the likelihood, which is concave.
+LossFit FittedLoss(const std::vector<Measurement>& measurements,
+                   const std::function<Eigen::VectorXd(const Measurement&)>& features) {
+  const Eigen::Index n = features(measurements.front()).size();
+  LossFit fit{Eigen::VectorXd::Zero(n), 0.0};
+  constexpr int kNumSteps = 50;
+  for (int step = 0; step < kNumSteps; ++step) {
+    Eigen::MatrixXd hessian = 1e-9 * Eigen::MatrixXd::Identity(n, n);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(n);
+    fit.log_likelihood = 0.0;
+    for (const Measurement& m : measurements) {
+      const Eigen::VectorXd x = features(m);
+      const double p = 1.0 / (1.0 + std::exp(-fit.weights.dot(x)));
+      gradient += ((m.is_found ? 1.0 : 0.0) - p) * x;
+      hessian += p * (1.0 - p) * x * x.transpose();
+      fit.log_likelihood += std::log(std::max(m.is_found ? p : 1.0 - p, 1e-300));
+    }
+    fit.weights += hessian.ldlt().solve(gradient);
+  }
+  return fit;
+}
+
+void PrintLossFits(std::vector<Measurement> measurements) {
+  // Sharper boards are all found, and say nothing.
+  std::erase_if(measurements, [](const Measurement& m) { return m.blur_px < 5.0; });
+  const auto print = [&](const char* name, auto features) {
+    const LossFit fit = FittedLoss(measurements, features);
+    std::fprintf(stderr, "loss by %s: log-likelihood %.2f, half at %.3f, slope %.3f\n", name,
+                 fit.log_likelihood, -fit.weights[0] / fit.weights[1], -1.0 / fit.weights[1]);
+  };
+  print("blur [px]", [](const Measurement& m) { return Vector2d(1.0, m.blur_px); });
+  print("smear", [](const Measurement& m) { return Vector2d(1.0, m.blur_px / m.spacing_px); });
+  print("blur and squares [px], at squares of 0 px",
+        [](const Measurement& m) { return Vector3d(1.0, m.blur_px, m.spacing_px); });
+}
+
 // Measured over predicted standard deviation in classes of one of the measurements.
 template <typename Key>
 void PrintClasses(const char* name, const std::vector<double>& edges, const CornerNoise& noise,
@@ -215,6 +259,7 @@ int Run(int num_images, uint64_t seed) {
                measurements, [](const Measurement& m) { return m.blur_px; });
   PrintClasses("smear", {0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.5}, noise, measurements,
                [](const Measurement& m) { return m.blur_px / m.spacing_px; });
+  PrintLossFits(measurements);
   std::erase_if(measurements, [](const Measurement& m) { return m.blur_px > 6.0; });
   std::fprintf(stderr, "of images with a blur of up to 6 px:\n");
   PrintClasses("tilt [rad]", {0.0, 0.25, 0.5, 0.75, 1.05}, noise, measurements,

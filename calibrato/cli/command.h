@@ -47,6 +47,7 @@ Action SetUpEvaluateFigure7(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluatePareto(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateRivals(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateAll(CLI::App& app, const GlobalOptions& global);
+Action SetUpExport(CLI::App& app, const GlobalOptions& global);
 Action SetUpCheck(CLI::App& app, const GlobalOptions& global);
 Action SetUpConvert(CLI::App& app, const GlobalOptions& global);
 Action SetUpNoise(CLI::App& app, const GlobalOptions& global);

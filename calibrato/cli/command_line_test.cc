@@ -410,6 +410,34 @@ TEST(Simulate, NamesAFidelityThatIsNotThere) {
                 {"renderd", "did you mean rendered?"});
 }
 
+TEST(Simulate, NamesAnEffectThatIsNotThere) {
+  const SimulationInput input;
+  ExpectRefused(input.scratch, With(input.Simulate(), {"--effects", "jitter,drop"}),
+                {"drop", "did you mean drops?"});
+}
+
+TEST(Simulate, KeepsTheEffectsInTheRigOfTheRecording) {
+  const SimulationInput input;
+  const std::string recording = input.scratch.Path("recording");
+  const Ended ended = RunProgram(
+      With(input.Simulate(), {"--effects", "stand-motion,lens-residual", "--out", recording}));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  const Value rig = ParseYaml(ReadFile(recording + "/rig.yaml"), "rig.yaml");
+  EXPECT_EQ(rig.At("stand_motion_m").AsDouble(), 2e-4);
+  EXPECT_EQ(rig.At("lens_residual").At("rms_px").AsDouble(), 0.1);
+}
+
+TEST(Simulate, NamesAMistakeInTheRig) {
+  const SimulationInput input;
+  for (const auto& [text, word] :
+       {std::pair<std::string, std::string>(RigYaml().substr(0, RigYaml().size() / 3), "rig.yaml"),
+        {"cameras: [", "line"},
+        {std::string("\xff\xfe\x00rig", 6), "rig.yaml"}}) {
+    (void)input.scratch.Write("rig.yaml", text);
+    ExpectRefused(input.scratch, input.Simulate(), {word});
+  }
+}
+
 TEST(Simulate, NamesTheArmWhereThereAreNoDynamics) {
   const SimulationInput input;
   ExpectRefused(input.scratch, With(input.Simulate(), {"--fidelity", "physical"}),
@@ -605,7 +633,9 @@ TEST(CommandLine, HelpOfEveryCommandNamesItsOptions) {
        {"recording", "--target", "--cameras", "--camera-result", "--imu", "--imu-model",
         "--estimate-noise", "--joint-intrinsics", "--max-iterations", "--gravity", "--out"}},
       {{"simulate"},
-       {"--rig", "--motion", "--carrier", "--fidelity", "--scale-to-fit", "--video", "--out"}},
+       {"--rig", "--motion", "--carrier", "--timing", "--fidelity", "--effects", "--scale-to-fit",
+        "--video", "--out"}},
+      {{"export"}, {"motion", "--format", "--rig", "--timing", "--scale-to-fit", "--out"}},
       {{"learn"},
        {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--reward", "--criterion",
         "--information-weight", "--mistakes", "--planner", "--evaluations", "--round", "--episodes",

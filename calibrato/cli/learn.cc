@@ -186,7 +186,8 @@ Action SetUpLearn(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--carrier", setting.carrier, "free or arm")->capture_default_str();
   app.add_option("--fidelity", setting.fidelity, "fast, physical or rendered")
       ->capture_default_str();
-  app.add_option("--rigs", setting.rigs, "A distribution (paper, paper-undistorted), or a RIG.yaml")
+  app.add_option("--rigs", setting.rigs,
+                 "paper, paper-undistorted, broad, paper-real, broad-real, or a RIG.yaml")
       ->capture_default_str();
   app.add_option("--reward", setting.reward, "error, or reprojection where the truth is not known")
       ->capture_default_str();

@@ -31,6 +31,7 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
   const Fidelity fidelity = FidelityFromName(setting.fidelity);
   std::vector<Rig> believed;
   std::function<Rig(uint64_t)> rig_of_episode;
+  bool is_before_board = true;  // Of every rig, where it was planned.
   if (std::filesystem::is_regular_file(setting.rigs)) {
     const Rig rig = AsEstimated(ReadRig(setting.rigs));
     believed = {rig};
@@ -38,6 +39,7 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
   } else {
     const RigDistribution rigs = RigDistributionFromName(setting.rigs);
     believed = BelievedRigs(rigs, arguments.design.num_believed, rng);
+    is_before_board = IsPapersScene(rigs);
     rig_of_episode = [rigs, rng](uint64_t index) {
       Rng draw = rng.Stream("episode rig", index);
       return DrawRig(rigs, draw);
@@ -59,8 +61,9 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
   options.environment = "rigs " + setting.rigs + ", fidelity " + setting.fidelity;
   const MotionDesignProblem& problem = options.problem;
   const Judge judge = [&](const TimedMotion& motion, uint64_t index) {
-    return JudgeMotion(problem.task, rig_of_episode(index), motion, fidelity, problem.criterion,
-                       rng.Stream("episode noise", index));
+    const Rig rig = rig_of_episode(index);
+    return JudgeMotion(problem.task, rig, is_before_board ? motion : BeforeBoard(motion, rig),
+                       fidelity, problem.criterion, rng.Stream("episode noise", index));
   };
   NoteInterruptions();
   return LearnByDesign(options, judge, arguments.out, &InterruptRequested());

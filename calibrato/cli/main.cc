@@ -56,6 +56,7 @@ const std::vector<Command> kCommands = {
      "Estimators of others and motions, each with each, on the same recordings",
      SetUpEvaluateRivals},
     {{"evaluate", "all"}, "All of these on one page", SetUpEvaluateAll},
+    {{"export"}, "A motion as a robot's arm reads it, timed and checked", SetUpExport},
     {{"check"}, "What is wrong with a recording, before it is calibrated", SetUpCheck},
     {{"convert"}, "A recording as folder, ROS 1 bag or MCAP file, without loss", SetUpConvert},
     {{"noise"}, "Noise densities of an IMU from a log of it at rest", SetUpNoise},

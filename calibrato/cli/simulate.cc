@@ -13,6 +13,7 @@
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
 #include "calibrato/recording/video_writer.h"
+#include "calibrato/sensors/effects.h"
 #include "calibrato/simulation/outside_view.h"
 #include "calibrato/simulation/simulated_recording.h"
 #include "calibrato/simulation/simulated_run.h"
@@ -27,7 +28,9 @@ struct Options {
   std::string rig;
   std::string motion;
   std::string carrier;
+  std::string timing;
   std::string fidelity = "fast";
+  std::string effects;
   bool scale_to_fit = false;
   bool video = false;
   std::string out;
@@ -86,16 +89,17 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
                       "a recording is not replaced unasked", "choose another name or add --force"});
   }
   OutputFolder out(options.out);
-  const Rig rig = ReadRig(options.rig);
+  Rig rig = ReadRig(options.rig);
+  if (!options.effects.empty()) SwitchOnEffects(options.effects, &rig);
   Motion motion = ReadMotion(options.motion);
   if (!options.carrier.empty()) motion.carrier = CarrierFromName(options.carrier);
+  if (!options.timing.empty()) motion.timing = TimingFromName(options.timing);
 
   auto planned = PlanMotion(motion, rig);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) {
     if (!options.scale_to_fit) {
       throw InputError({"the carrier '" + CarrierName(motion.carrier) + "' can't make this motion",
-                        options.motion, refusal->Describe(),
-                        "make it smaller, or add --scale-to-fit"});
+                        options.motion, refusal->Describe(), refusal->remedy});
     }
     planned = PlanScaledToFit(motion, rig);
   }
@@ -126,6 +130,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       .Set(run.images.empty() ? "num_views" : "num_images", num_views)
       .Set("num_out_of_image", run.frames.num_out_of_image)
       .Set("num_lost_to_blur", run.frames.num_lost_to_blur)
+      .Set("num_dropped", run.frames.num_dropped)
       .Set("num_imu_samples", run.imu.stream.gyro.size())
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale)
@@ -153,9 +158,14 @@ Action SetUpSimulate(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "The rig and the board before it: RIG.yaml")->required();
   app.add_option("--motion", options->motion, "The motion: MOTION.yaml")->required();
   app.add_option("--carrier", options->carrier, "free or arm; else the motion's own");
+  app.add_option("--timing", options->timing,
+                 "quintic, or optimal (as fast as the carrier can); else the motion's own");
   app.add_option("--fidelity", options->fidelity,
                  "fast, physical (the arm's dynamics) or rendered (images too)")
       ->capture_default_str();
+  app.add_option("--effects", options->effects,
+                 "What real arms, cameras and IMUs do, switched on at its ordinary size: all, or "
+                 "names separated by commas (docs/simulation.md)");
   app.add_flag("--scale-to-fit", options->scale_to_fit,
                "Shrink a motion that the carrier can't make, instead of refusing it");
   app.add_flag("--video", options->video,

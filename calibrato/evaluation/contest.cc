@@ -23,6 +23,21 @@ void CheckFidelity(const ContestSetting& setting) {
   if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
 }
 
+// Before boards that stand elsewhere the motion is planned anew.
+Trial TrialOf(const ContestSetting& setting, const Rig& rig, const PlannedMotion& motion,
+              const Rng& noise) {
+  if (setting.fixed_rig || IsPapersScene(setting.rigs)) {
+    return RunTrial(setting.task, rig, motion, setting.fidelity, noise);
+  }
+  try {
+    return RunTrial(setting.task, rig, BeforeBoard(motion, rig), setting.fidelity, noise);
+  } catch (const InputError& error) {
+    Trial failed;
+    failed.failure = error.what();
+    return failed;
+  }
+}
+
 }  // namespace
 
 std::vector<Rig> RigsUnderTrial(const ContestSetting& setting) {
@@ -54,8 +69,7 @@ ContestTrials RunContest(const ContestSetting& setting, const std::vector<Rig>& 
     std::vector<Trial> trials;
     for (const Contestant& contestant : contestants) {
       for (size_t m = 0; m < contestant.num_members(); ++m) {
-        trials.push_back(
-            RunTrial(setting.task, rigs[i], contestant.MotionFor(m, i), setting.fidelity, noise));
+        trials.push_back(TrialOf(setting, rigs[i], contestant.MotionFor(m, i), noise));
       }
     }
     progress.Advance();

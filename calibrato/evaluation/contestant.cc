@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calibrato/base/parallel.h"
+#include "calibrato/mdp/design_setting.h"
 
 namespace calibrato {
 namespace {
@@ -39,6 +40,10 @@ PlannedMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& s
   return Plan(std::get<RecordedTrajectory>(motion.way), scene);
 }
 
+PlannedMotion BeforeBoard(const PlannedMotion& motion, const Rig& rig) {
+  return motion.timed ? Planned(BeforeBoard(*motion.timed, rig)) : motion;
+}
+
 double Contestant::mean_path_length_m() const {
   double sum = 0.0;
   for (const PlannedMotion& motion : motions) sum += motion.path_length_m;
@@ -50,7 +55,9 @@ Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& 
   Contestant random{"random", {}, true};
   random.motions = ParallelMap<PlannedMotion>(rigs.size(), [&](size_t i) {
     Rng draws = rng.Stream("evaluation motion", i);
-    return Plan(RandomMotion(task, draws), carrier, rigs[i]);
+    Motion motion = RandomMotion(task, draws);
+    motion.base_pose = BasePoseBeforeBoard(rigs[i]);
+    return Plan(std::move(motion), carrier, rigs[i]);
   });
   return random;
 }

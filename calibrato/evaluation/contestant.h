@@ -37,6 +37,11 @@ struct PlannedMotion {
 [[nodiscard]] PlannedMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene);
 [[nodiscard]] PlannedMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene);
 
+/// The same before the board of a rig that stands elsewhere than where it was planned. Recorded
+/// trajectories stay: they are relative to the board already.
+/// @throws InputError if it can't be made there at any scale.
+[[nodiscard]] PlannedMotion BeforeBoard(const PlannedMotion& motion, const Rig& rig);
+
 /// One method under trial.
 struct Contestant {
   std::string policy;

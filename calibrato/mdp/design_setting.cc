@@ -2,7 +2,6 @@
 
 #include <string>
 #include <utility>
-#include <variant>
 
 #include "calibrato/mdp/frames_that_count.h"
 #include "calibrato/motion/paper_scene.h"
@@ -22,18 +21,27 @@ Rig AsEstimated(Rig rig) {
 
 std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws, const Rng& rng) {
   std::vector<Rig> rigs = {AsEstimated(PaperRig())};
+  const Eigen::Vector3d middle_w = rigs.front().T_w_g * BoardCentre(rigs.front().board);
   for (int i = 0; i < num_draws; ++i) {
     Rng draw = rng.Stream("believed rig", static_cast<uint64_t>(i));
-    rigs.push_back(AsEstimated(DrawRig(distribution, draw)));
+    Rig rig = AsEstimated(DrawRig(distribution, draw));
+    rig.T_e_c0 = rigs.front().T_e_c0;
+    rig.T_w_g.t = middle_w - rig.T_w_g.R * BoardCentre(rig.board);
+    rigs.push_back(std::move(rig));
   }
   return rigs;
 }
 
+TimedMotion BeforeBoard(const TimedMotion& motion, const Rig& rig) {
+  Motion moved = motion.motion;
+  moved.base_pose = BasePoseBeforeBoard(rig, moved.base_pose);
+  TimedMotion timed = PlanScaledToFit(moved, rig);
+  timed.scale *= motion.scale;
+  return timed;
+}
+
 MotionBudget BudgetOf(const Motion& motion, const Rig& rig) {
-  auto planned = PlanMotion(motion, rig);
-  const TimedMotion timed = std::holds_alternative<TimedMotion>(planned)
-                                ? std::get<TimedMotion>(std::move(planned))
-                                : PlanScaledToFit(motion, rig);
+  const TimedMotion timed = PlanScaledToFit(motion, rig);
   return {PathLength(timed.motion), timed.duration_s()};
 }
 

@@ -16,10 +16,17 @@ namespace calibrato {
 /// parameters (those it lacks 0), other lenses as they are.
 [[nodiscard]] Rig AsEstimated(Rig rig);
 
-/// What a distribution lets one believe: the paper's nominal rig, then draws, as estimated.
+/// What a distribution lets one believe: the paper's nominal rig, then draws, as estimated. Their
+/// mounts are the paper's, and the middles of their boards where the paper's is, since a motion is
+/// planned anew before each board (BeforeBoard).
 /// @param num_draws  >= 0
 [[nodiscard]] std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws,
                                             const Rng& rng);
+
+/// What was planned in the paper's scene, planned anew before a board that stands elsewhere
+/// (BasePoseBeforeBoard); shrunk where it does not fit there.
+/// @throws InputError if it fits at no scale.
+[[nodiscard]] TimedMotion BeforeBoard(const TimedMotion& motion, const Rig& rig);
 
 /// What a motion takes.
 struct MotionBudget {

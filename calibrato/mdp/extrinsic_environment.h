@@ -77,6 +77,7 @@ class ExtrinsicEnvironment final : public Environment {
   // One episode:
   Rng noise_{0};
   Rig rig_;
+  BasePose base_pose_;
   int num_steps_ = 0;
   int num_frames_ = 0;
   Time now_;

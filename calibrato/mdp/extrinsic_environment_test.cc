@@ -109,6 +109,23 @@ TEST(ExtrinsicEnvironment, KnowsWhatWasExpected) {
   EXPECT_NEAR(observed, std::sqrt(expected->criterion), 0.1 * observed);
 }
 
+// Lenses, boards, mounts and IMUs of all kinds, with time offsets: a loop or two at random, and
+// T_cam_imu is far better known than before any data.
+TEST(ExtrinsicEnvironment, CalibratesRigsOfAllKinds) {
+  ExtrinsicTask task;
+  task.rigs = RigDistribution::kBroad;
+  ExtrinsicEnvironment environment(task);
+  int num_better = 0;
+  for (uint64_t episode = 0; episode < 4; ++episode) {
+    (void)environment.Reset(Rng(episode));
+    const double before = environment.relative_error();
+    Rng actions = Rng(episode).Stream("actions");
+    for (int step = 0; step < 2; ++step) (void)environment.Step(RandomAction(actions));
+    num_better += environment.relative_error() < 0.2 * before ? 1 : 0;
+  }
+  EXPECT_GE(num_better, 3);
+}
+
 TEST(ExtrinsicEnvironment, ARefusedActionLeavesTheStateAndCosts) {
   ExtrinsicEnvironment environment({});
   Rng rng(4);

@@ -37,8 +37,8 @@ TEST(IntrinsicCovariance, CoversTheTruth) {
     CameraProblem problem;
     problem.model = kIntrinsicTaskModel;
     problem.resolution = camera.resolution;
-    problem.views =
-        FramesThatCount(SimulateFrames(rig, motion, Time(), noise).views, camera.resolution);
+    problem.views = FramesThatCount(SimulateFrames(rig, motion, Time(), noise).views,
+                                    camera.resolution, rig.board);
     const CameraCalibration calibration = CalibrateCamera(problem);
     if (calibration.termination != Termination::kConverged) return Outcome{};
     const Eigen::Vector4d error =

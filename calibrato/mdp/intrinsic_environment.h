@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "calibrato/mdp/calibration_status.h"
@@ -78,6 +79,7 @@ class IntrinsicEnvironment final : public Environment {
   // One episode:
   Rng noise_{0};
   Rig rig_;
+  BasePose base_pose_;
   int num_steps_ = 0;
   Time now_;
   std::vector<BoardView> views_;

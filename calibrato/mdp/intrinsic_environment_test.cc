@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
@@ -123,12 +125,27 @@ TEST(IntrinsicEnvironment, IsTheSameForTheSameStream) {
   EXPECT_EQ(a.Step(action).observation, b.Step(action).observation);
 }
 
+TEST(IntrinsicEnvironment, RefusesAnActionThatIsNoNumberOrOutOfReach) {
+  for (const double bad : {std::nan(""), 10.0}) {
+    IntrinsicEnvironment environment({});
+    const Eigen::VectorXd before = environment.Reset(Rng(1));
+    LoopCoefficients action = Still();
+    action(7) = bad;
+    const StepResult step = environment.Step(action);
+    EXPECT_FALSE(step.executed);
+    EXPECT_EQ(step.observation, before);
+    EXPECT_EQ(step.reward, IntrinsicRewardWeights().refusal);
+  }
+}
+
 TEST(FramesThatCount, AreEightPixelsInside) {
   BoardView view;
-  view.pixels.resize(2, 2);
+  view.corner_ids = {0, 1, 2, 3};
+  view.points_g = Eigen::Matrix3Xd::Zero(3, 4);
+  view.pixels.resize(2, 4);
   const auto counts = [&](double u, double v) {
-    view.pixels << 300.0, u, 200.0, v;
-    return !FramesThatCount({view}, {640, 480}).empty();
+    view.pixels << 300.0, 310.0, 320.0, u, 200.0, 210.0, 220.0, v;
+    return !FramesThatCount({view}, {640, 480}, PaperRig().board).empty();
   };
   EXPECT_TRUE(counts(8.0, 8.0));
   EXPECT_FALSE(counts(7.9, 8.0));
@@ -199,6 +216,25 @@ TEST(IntrinsicEnvironment, WithoutCalibrationTheEstimateStaysThePriors) {
     EXPECT_EQ(Term(step, "relative_error"), 0.0);
     EXPECT_EQ(Term(step, "accuracy_bonus"), 0.0);
   }
+}
+
+// Four loops before boards of all kinds: some of each distribution's episodes end with a camera
+// that is far better known than before any data.
+TEST(IntrinsicEnvironment, CalibratesRigsOfAllKinds) {
+  IntrinsicTask task;
+  task.rigs = RigDistribution::kBroad;
+  IntrinsicEnvironment environment(task);
+  int num_better = 0;
+  for (uint64_t episode = 0; episode < 6; ++episode) {
+    (void)environment.Reset(Rng(episode));
+    const double before = environment.relative_error();
+    Rng actions = Rng(episode).Stream("actions");
+    for (int step = 0; step < environment.horizon(); ++step) {
+      (void)environment.Step(RandomAction(actions));
+    }
+    num_better += environment.relative_error() < 0.2 * before ? 1 : 0;
+  }
+  EXPECT_GE(num_better, 4);
 }
 
 TEST(IntrinsicMistakes, ConstantAccuracyRewardsAnyMotionAlike) {

@@ -20,6 +20,7 @@ Eigen::VectorXd JointEnvironment::Reset(const Rng& rng) {
     Rng rigs = rng.Stream("rig");
     rig_ = DrawRig(task_.rigs, rigs);
   }
+  base_pose_ = task_.fixed_rig ? BasePose() : BasePoseBeforeBoard(rig_);
   noise_ = rng.Stream("noise");
   num_steps_ = 0;
   num_frames_ = 0;
@@ -75,6 +76,7 @@ StepResult JointEnvironment::Step(const LoopCoefficients& action) {
   const JointRewardWeights& weights = task_.weights;
   Motion motion;
   motion.carrier = task_.carrier;
+  motion.base_pose = base_pose_;
   motion.loops.push_back({ScaledAction(action), 5.0});
   // Each loop has noise of its own, whatever became of the loops before it.
   const Rng loop_noise = noise_.Stream("loop", static_cast<uint64_t>(num_steps_));

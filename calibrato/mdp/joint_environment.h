@@ -82,6 +82,7 @@ class JointEnvironment final : public Environment {
   // One episode:
   Rng noise_{0};
   Rig rig_;
+  BasePose base_pose_;
   int num_steps_ = 0;
   int num_frames_ = 0;
   Time now_;

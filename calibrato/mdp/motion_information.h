@@ -40,7 +40,8 @@ struct MotionInformation {
 /// Of the camera's parameters, from frames at the rig's rate with its corner noise at rest, each
 /// frame of unknown pose. Frames are spread evenly over each loop, a fixed number with the weight
 /// of as many as the rate gives in its duration, so that the number is smooth in the duration.
-/// Frames count when the board is at least 8 px inside the image.
+/// Frames count when the board is at least 8 px inside the image: the whole of it, also of an
+/// AprilGrid, so of that one the number is a lower bound.
 /// @param motion  Its durations are those of the execution (a carrier may stretch them).
 /// @return nothing where the frames do not determine the camera.
 [[nodiscard]] std::optional<MotionInformation> ExpectIntrinsicInformation(

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "calibrato/motion/arm_clearance.h"
 #include "calibrato/motion/board_in_view.h"
@@ -15,6 +16,9 @@
 #include "calibrato/motion/joint_path_search.h"
 #include "calibrato/motion/joint_timing.h"
 #include "calibrato/motion/looped_path.h"
+#include "calibrato/motion/optimal_timing.h"
+#include "calibrato/motion/singularity.h"
+#include "calibrato/motion/time_law.h"
 
 namespace calibrato {
 namespace {
@@ -125,6 +129,19 @@ JointPathCosts PathCosts(const JointRange& range) {
            {.margin = 0.002, .weight = 1e6, .range = range}}};
 }
 
+// The same with a wide berth of obstacles and singularities, at a price that outweighs any detour.
+JointPathCosts CarefulPathCosts(const JointRange& range, const ClearanceCheck& clearance,
+                                double clearance_m) {
+  constexpr double kWideBerth = 0.03;  // [m]
+  const std::vector<KeptDistance> kept = {
+      {[&clearance](const JointVector& q) { return clearance.Least(q).distance_m; },
+       clearance_m + kWideBerth, 1e4},
+      {SingularityDistance, 2.0 * kMinSingularityDistance, 1e4}};
+  JointPathCosts costs = PathCosts(range);
+  for (JointPathCost& cost : costs) cost.kept_distances = kept;
+  return costs;
+}
+
 JointRange RangeOf(const ArmLimits& limits) {
   return {.lower = Limits().lower.cwiseMax(limits.joint_lower),
           .upper = Limits().upper.cwiseMin(limits.joint_upper)};
@@ -152,6 +169,56 @@ std::optional<Refusal> CheckWristTurn(const JointPath& path, const ArmLimits& li
   return refusal;
 }
 
+constexpr char kAwayFromSingularity[] =
+    "joints would have to turn without end there: choose another base_pose, make the motion "
+    "smaller, or add --scale-to-fit";
+
+std::optional<Refusal> CheckSingularity(const JointPath& path, size_t loop, int way_point) {
+  const JointVector& q = path.At(loop, way_point);
+  Refusal refusal;
+  refusal.limit = "distance of the " + SingularPart(q) + " from a singularity";
+  refusal.value = SingularityDistance(q);
+  refusal.bound = kMinSingularityDistance;
+  refusal.unit = "m/rad";
+  refusal.remedy = kAwayFromSingularity;
+  if (refusal.value >= refusal.bound) return std::nullopt;
+  return refusal;
+}
+
+// A step of the joints that is too long has its reason where its ends are nearly singular.
+void NameSingularity(const JointVector& q, Refusal* step) {
+  constexpr double kNear = 3.0 * kMinSingularityDistance;
+  if (SingularityDistance(q) >= kNear || step->remedy == kAwayFromSingularity) return;
+  step->limit += ", near a singular " + SingularPart(q);
+  step->remedy = kAwayFromSingularity;
+}
+
+std::optional<Refusal> CheckLimitsAndSteps(const JointPath& path, const JointRange& range,
+                                           size_t loop, int way_point) {
+  std::optional<Refusal> refusal = CheckJoints(path, range, loop, way_point);
+  if (refusal && refusal->bound == kMaxJointStep) {
+    for (const int end : {way_point, way_point - 1}) NameSingularity(path.At(loop, end), &*refusal);
+  }
+  return refusal;
+}
+
+// Where no path gets along: of all ways to stand there within the limits, and where it comes from,
+// the farthest from a singularity.
+Refusal WithReason(const JointChoices& choices, const JointRange& range, Refusal gap) {
+  if (gap.bound != kMaxJointStep) return gap;
+  for (const int way_point : {gap.way_point, gap.way_point - 1}) {
+    double distance = -1.0;
+    const JointVector* farthest = nullptr;
+    for (const JointVector& q : choices.At(static_cast<size_t>(gap.loop), way_point)) {
+      if (JointLimitExcess(q, range) > 0.0 || SingularityDistance(q) <= distance) continue;
+      distance = SingularityDistance(q);
+      farthest = &q;
+    }
+    if (farthest != nullptr) NameSingularity(*farthest, &gap);
+  }
+  return gap;
+}
+
 // On the way to a way-point, itself included.
 std::optional<Refusal> CheckClearance(const LoopJointSpline& spline, const ClearanceCheck& check,
                                       double clearance_m, int way_point) {
@@ -171,14 +238,27 @@ std::optional<Refusal> CheckClearance(const LoopJointSpline& spline, const Clear
   return std::nullopt;
 }
 
+TimeLaw TimeLawOf(const Motion& motion, const JointPath& path, size_t loop) {
+  const auto stretch = [&](const TimeLaw& law) { return SmallestStretch(path, loop, law); };
+  if (motion.timing == Timing::kOptimal) {
+    const LoopJointSpline spline(path, loop);
+    return FastestTimeLaw([&](double theta) { return PhaseLimitsOfJoints(spline, theta); },
+                          stretch);
+  }
+  TimeLaw law{motion.loops[loop].duration_s, {}};
+  law.duration_s *= stretch(law);
+  return law;
+}
+
 TimedMotion Timed(const Motion& motion, const JointPath& path) {
+  std::vector<TimeLaw> laws;
+  for (size_t loop = 0; loop < motion.loops.size(); ++loop) {
+    laws.push_back(TimeLawOf(motion, path, loop));
+  }
   TimedMotion timed;
   timed.motion = motion;
-  for (size_t loop = 0; loop < motion.loops.size(); ++loop) {
-    const double duration_s = motion.loops[loop].duration_s;
-    timed.loop_duration_s.push_back(duration_s * SmallestStretch(path, loop, duration_s));
-  }
-  timed.joint_path = TimedJointPath(path, timed.loop_duration_s);
+  timed.SetTimeLaws(laws);
+  timed.joint_path = TimedJointPath(path, laws);
   return timed;
 }
 
@@ -191,22 +271,24 @@ class Selection {
         poses_(poses),
         limits_(rig.arm_limits),
         range_(RangeOf(rig.arm_limits)),
-        costs_(PathCosts(range_)),
         clearance_(rig) {}
 
-  void Try(const JointPath& candidate, size_t first_cost) {
-    JointPath path = Refined(poses_, candidate, costs_, first_cost);
+  void Try(const JointPath& candidate, const JointPathCosts& costs, size_t first_cost) {
+    JointPath path = Refined(poses_, candidate, costs, first_cost);
     const size_t num_loops = motion_.loops.size();
     std::optional<Refusal> refusal = CheckWayPoints(
-        num_loops, [&](size_t loop, int i) { return CheckJoints(path, range_, loop, i); });
+        num_loops, [&](size_t loop, int i) { return CheckLimitsAndSteps(path, range_, loop, i); });
     if (!refusal) {
       // Only of a path that the joints can go.
       std::vector<LoopJointSpline> splines;
       for (size_t loop = 0; loop < num_loops; ++loop) splines.emplace_back(path, loop);
       refusal = CheckWayPoints(num_loops, [&](size_t loop, int i) {
-        std::optional<Refusal> turn = CheckWristTurn(path, limits_, loop, i);
-        return turn ? turn : CheckClearance(splines[loop], clearance_, limits_.clearance_m, i);
+        std::optional<Refusal> at_way_point = CheckWristTurn(path, limits_, loop, i);
+        if (!at_way_point) at_way_point = CheckSingularity(path, loop, i);
+        return at_way_point ? at_way_point
+                            : CheckClearance(splines[loop], clearance_, limits_.clearance_m, i);
       });
+      joints_fit_ = true;
     }
     if (!refusal) {
       TimedMotion timed = Timed(motion_, path);
@@ -218,6 +300,9 @@ class Selection {
   }
 
   const std::optional<TimedMotion>& quickest() const { return quickest_; }
+  // Whether some candidate kept all joint limits, so that only where it led was wrong.
+  bool joints_fit() const { return joints_fit_; }
+  const ClearanceCheck& clearance() const { return clearance_; }
   // @pre no candidate fits
   const Refusal& fewest_bad() const { return *fewest_bad_; }
   // For the way-points alone that would be bad on any path. @pre no candidate fits
@@ -234,9 +319,9 @@ class Selection {
   const PosePath& poses_;
   const ArmLimits& limits_;
   JointRange range_;
-  JointPathCosts costs_;
   ClearanceCheck clearance_;
   std::optional<TimedMotion> quickest_;
+  bool joints_fit_ = false;
   std::optional<Refusal> fewest_bad_;
   JointPath fewest_bad_path_;
 };
@@ -256,23 +341,33 @@ std::variant<TimedMotion, Refusal> PlanOnArm(const Motion& motion, const Rig& ri
   if (std::optional<Refusal> refusal = CheckWayPoints(num_loops, check_pose)) return *refusal;
 
   Selection selection(motion, poses, rig);
-  const auto try_paths = [&](const JointChoices& from, size_t first_cost) {
+  const auto try_paths = [&](const JointChoices& from, const JointPathCosts& costs,
+                             size_t first_cost) {
     std::variant<std::vector<JointPath>, Refusal> search =
-        SearchJointPaths(from, PathCosts(range)[first_cost]);
+        SearchJointPaths(from, costs[first_cost]);
     if (auto* refusal = std::get_if<Refusal>(&search)) {
       refusal->num_way_points = kNumWayPoints * static_cast<int>(num_loops);
       return std::optional(*std::move(refusal));
     }
     for (const JointPath& path : std::get<std::vector<JointPath>>(search)) {
-      selection.Try(path, first_cost);
+      selection.Try(path, costs, first_cost);
     }
     return std::optional<Refusal>();
   };
-  if (const std::optional<Refusal> gap = try_paths(choices, 0)) return *gap;
+  const JointPathCosts costs = PathCosts(range);
+  if (const std::optional<Refusal> gap = try_paths(choices, costs, 0)) {
+    return WithReason(choices, range, *gap);
+  }
   if (selection.quickest()) return *selection.quickest();
-  if (const std::optional<Refusal> refusal = selection.BadOnAnyPath()) return *refusal;
-  // Every way-point alone can be reached. A soft wall on a coarse grid may have led astray.
-  (void)try_paths(FinerWhereTight(poses, choices, range), 1);
+  if (selection.joints_fit()) {
+    const JointPathCosts careful =
+        CarefulPathCosts(range, selection.clearance(), rig.arm_limits.clearance_m);
+    (void)try_paths(choices, careful, 0);
+  } else {
+    if (const std::optional<Refusal> refusal = selection.BadOnAnyPath()) return *refusal;
+    // Every way-point alone can be reached. A soft wall on a coarse grid may have led astray.
+    (void)try_paths(FinerWhereTight(poses, choices, range), costs, 1);
+  }
   if (selection.quickest()) return *selection.quickest();
   return selection.fewest_bad();
 }

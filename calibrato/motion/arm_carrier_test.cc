@@ -6,11 +6,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <numbers>
 
 #include "calibrato/base/input_error.h"
+#include "calibrato/geometry/rpy.h"
+#include "calibrato/motion/arm_clearance.h"
+#include "calibrato/motion/joint_motion.h"
 #include "calibrato/motion/joint_path_cost.h"
+#include "calibrato/motion/joint_path_refinement.h"
 #include "calibrato/motion/joint_path_search.h"
 #include "calibrato/motion/paper_scene.h"
+#include "calibrato/motion/singularity.h"
 #include "calibrato/motion/way_point.h"
 
 namespace calibrato {
@@ -166,6 +172,116 @@ TEST(ArmCarrier, RefusesToEnterABoxAndPassesBesideIt) {
   ExpectRefusal(motion, rig, "to lamp");
   rig.arm_limits.keep_out[0].T_b_box.t.z() = 1.4;
   EXPECT_TRUE(std::holds_alternative<TimedMotion>(PlanMotion(motion, rig)));
+}
+
+// Of the whole way, at 50 instants a second.
+double LeastClearance(const TimedMotion& timed, const Rig& rig) {
+  const ClearanceCheck check(rig);
+  const JointTrajectory trajectory(timed);
+  double least = std::numeric_limits<double>::infinity();
+  for (double t_s = 0.0; t_s < timed.duration_s(); t_s += 0.02) {
+    least = std::min(least, check.Least(trajectory.At(t_s).position).distance_m);
+  }
+  return least;
+}
+
+// All joint paths that a search finds which knows of no obstacle.
+std::vector<JointPath> PathsWithoutObstacles(const Motion& motion) {
+  PosePath poses;
+  poses.start = LoopPoseAt(motion.base_pose, LoopCoefficients::Zero(), 0.0);
+  for (const Loop& loop : motion.loops) {
+    PosePath::Loop& loop_poses = poses.loops.emplace_back();
+    for (int i = 1; i < kNumWayPoints; ++i) {
+      loop_poses[i - 1] = LoopPoseAt(motion.base_pose, loop.coefficients, WayPointPhase(i));
+    }
+  }
+  const auto search = SearchJointPaths(JointChoicesAlong(poses), {});
+  std::vector<JointPath> paths = std::get<std::vector<JointPath>>(search);
+  for (JointPath& path : paths) path = RefineJointPath(poses, path, {});
+  return paths;
+}
+
+TEST(ArmCarrier, SwingsTheElbowOutOfTheWayOfBoxes) {
+  // Small boxes in every place where the elbow would be: without a search that sees them there is
+  // no way left.
+  const Motion motion = OnArm(HandcraftedMotion(Task::kExtrinsic));
+  const std::vector<JointPath> paths = PathsWithoutObstacles(motion);
+  Rig rig = PaperRig();
+  for (const JointPath& path : paths) {
+    Rigid3 T_b_box;
+    T_b_box.t = AxesOf(path.start).T_b_link[3].t;
+    rig.arm_limits.keep_out.push_back({"beam", T_b_box, {0.02, 0.02, 0.02}});
+  }
+  const ClearanceCheck check(rig);
+  for (const JointPath& path : paths) EXPECT_LT(check.Least(path.start).distance_m, 0.0);
+  const auto plan = PlanMotion(motion, rig);
+  ASSERT_TRUE(std::holds_alternative<TimedMotion>(plan)) << std::get<Refusal>(plan).Describe();
+  const TimedMotion& swung = std::get<TimedMotion>(plan);
+  EXPECT_GE(LeastClearance(swung, rig), rig.arm_limits.clearance_m - 1e-4);
+  ExpectJointPathFollowsTheMotion(swung);
+}
+
+// The board so far before the camera at the motion's base pose that it stays in view.
+Rig WithBoardBefore(const BasePose& base) {
+  Rig rig = PaperRig();
+  const Rigid3 T_w_c0 =
+      ArmBaseInWorld() * LoopPoseAt(base, LoopCoefficients::Zero(), 0.0) * rig.T_e_c0;
+  rig.T_w_g.t += T_w_c0 * Eigen::Vector3d(0.0, 0.0, 1.2) - rig.T_w_g * BoardCentre(rig.board);
+  return rig;
+}
+
+TEST(ArmCarrier, RefusesToReachOutUntilTheWristIsSingular) {
+  // Outwards to within a millimetre of where no joint angles reach.
+  const auto reaches = [](double way) {
+    const Motion motion = OneLoop(0, -0.5 * way);
+    const Rigid3 pose =
+        LoopPoseAt(motion.base_pose, motion.loops[0].coefficients, std::numbers::pi);
+    double shortfall = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= 1000; ++i) {
+      const double q7 = Limits().lower[6] + (Limits().upper[6] - Limits().lower[6]) * i / 1000;
+      shortfall = std::min(shortfall, PandaShortfall(pose, q7));
+    }
+    return shortfall == 0.0;
+  };
+  double inside = 0.0;
+  double outside = 1.0;
+  while (outside - inside > 1e-4) {
+    const double middle = 0.5 * (inside + outside);
+    (reaches(middle) ? inside : outside) = middle;
+  }
+  const Motion motion = OneLoop(0, -0.5 * (inside - 5e-4));
+  const auto plan = PlanMotion(motion, WithBoardBefore(motion.base_pose));
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  const Refusal& refusal = std::get<Refusal>(plan);
+  // There axes 5 and 7 come into line before the elbow is stretched.
+  EXPECT_NE(refusal.limit.find("near a singular wrist"), std::string::npos) << refusal.Describe();
+  EXPECT_EQ(refusal.loop, 0);
+  EXPECT_GT(refusal.way_point, 15);
+  EXPECT_LE(refusal.way_point, 31);
+  EXPECT_NE(refusal.remedy.find("base_pose"), std::string::npos);
+}
+
+TEST(ArmCarrier, StandsElsewhereThanInASingularWristOrShoulder) {
+  // Two postures that are singular, each of a pose that others reach as well. A loop through that
+  // pose keeps away from them.
+  JointVector wrist;
+  wrist << 0.099, 0.0, 1.423, -1.356, 2.493, 0.0, 2.2;
+  JointVector shoulder;
+  shoulder << 0.2, 0.0, 0.5 * std::numbers::pi, -2.0, 0.3, 1.8, 0.7;
+  for (const JointVector& singular : {wrist, shoulder}) {
+    EXPECT_LT(SingularityDistance(singular), 0.2 * kMinSingularityDistance);
+    const Rigid3 T_b_e = PandaPose(singular, nullptr);
+    Motion motion = OneLoop(15, 0.02);
+    motion.loops[0].coefficients[24] = 0.05;
+    motion.base_pose = {T_b_e.t, RpyFromRotation(T_b_e.R)};
+    const auto plan = PlanMotion(motion, WithBoardBefore(motion.base_pose));
+    ASSERT_TRUE(std::holds_alternative<TimedMotion>(plan)) << std::get<Refusal>(plan).Describe();
+    const TimedMotion& timed = std::get<TimedMotion>(plan);
+    ExpectJointPathFollowsTheMotion(timed);
+    for (const JointSample& sample : timed.joint_path) {
+      EXPECT_GE(SingularityDistance(sample.position), kMinSingularityDistance);
+    }
+  }
 }
 
 TEST(ArmCarrier, KeepsTheUsersJointLimits) {

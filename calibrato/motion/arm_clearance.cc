@@ -89,6 +89,12 @@ const std::vector<ArmPart>& ArmParts() {
   return parts;
 }
 
+Capsule RightFinger(const Rig& rig) {
+  Capsule finger = ArmParts().back().capsule;
+  finger.b += rig.finger_reach_m * (finger.b - finger.a).normalized();
+  return finger;
+}
+
 double Distance(const Capsule& capsule, const Box& box) {
   const Rigid3 T_box_b = box.T_b_box.Inverse();
   const Vector3d a = T_box_b * capsule.a;
@@ -148,6 +154,7 @@ double Distance(const Capsule& first, const Capsule& second) {
 }
 
 ClearanceCheck::ClearanceCheck(const Rig& rig) : parts_(ArmParts()), things_(SurroundingsOf(rig)) {
+  parts_.back().capsule = RightFinger(rig);
   const Rigid3 T_e_i = rig.T_e_c0 * rig.T_c0_i;
   parts_.push_back({"camera", kHand, {rig.T_e_c0.t, rig.T_e_c0.t, kSensorRadius}});
   parts_.push_back({"IMU", kHand, {T_e_i.t, T_e_i.t, kSensorRadius}});

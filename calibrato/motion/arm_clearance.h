@@ -37,6 +37,8 @@ struct ArmPart {
 };
 /// Links 1 to 7 and the hand with its fingers: capsules around the maker's shape of each.
 [[nodiscard]] const std::vector<ArmPart>& ArmParts();
+/// The right finger with what it holds (Rig::finger_reach_m), in the controlled frame e.
+[[nodiscard]] Capsule RightFinger(const Rig& rig);
 
 /// From surface to surface; negative where they overlap [m].
 [[nodiscard]] double Distance(const Capsule& capsule, const Box& box);

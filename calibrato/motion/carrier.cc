@@ -33,6 +33,23 @@ Motion Scaled(const Motion& motion, double factor) {
 
 Rigid3 ArmBaseInWorld() { return {RotationFromRpy({0.0, 0.0, std::numbers::pi})}; }
 
+void TimedMotion::SetTimeLaws(const std::vector<TimeLaw>& laws) {
+  loop_duration_s.clear();
+  loop_phase_control_points.clear();
+  for (const TimeLaw& law : laws) {
+    loop_duration_s.push_back(law.duration_s);
+    loop_phase_control_points.push_back(law.control_points);
+  }
+  if (std::ranges::all_of(laws, [](const TimeLaw& law) { return law.control_points.empty(); })) {
+    loop_phase_control_points.clear();
+  }
+}
+
+TimeLaw TimedMotion::LawOf(size_t loop) const {
+  if (loop_phase_control_points.empty()) return {loop_duration_s[loop], {}};
+  return {loop_duration_s[loop], loop_phase_control_points[loop]};
+}
+
 double TimedMotion::duration_s() const {
   return std::accumulate(loop_duration_s.begin(), loop_duration_s.end(), 0.0);
 }
@@ -41,8 +58,10 @@ CarrierState TimedMotion::At(double t_s) const {
   assert(!motion.loops.empty() && motion.loops.size() == loop_duration_s.size());
   size_t i = 0;
   while (i + 1 < motion.loops.size() && t_s > loop_duration_s[i]) t_s -= loop_duration_s[i++];
-  return LoopStateAt(motion.base_pose, motion.loops[i].coefficients,
-                     QuinticPhaseAt(t_s, loop_duration_s[i]));
+  const Phase phase = loop_phase_control_points.empty()
+                          ? QuinticPhaseAt(t_s, loop_duration_s[i])
+                          : PhaseAt(loop_phase_control_points[i], t_s, loop_duration_s[i]);
+  return LoopStateAt(motion.base_pose, motion.loops[i].coefficients, phase);
 }
 
 CarrierPath PlannedPath(const TimedMotion& motion) {
@@ -53,6 +72,29 @@ CarrierPath PlannedPath(const TimedMotion& motion) {
     };
   }
   return path;
+}
+
+Value ToValue(const TimedMotion& timed) {
+  Value value = ToValue(timed.motion);
+  value.Set("scale", timed.scale).Set("loop_duration_s", Value::Numbers(timed.loop_duration_s));
+  if (!timed.loop_phase_control_points.empty()) {
+    Value phases = Value::Array();
+    for (const std::vector<double>& points : timed.loop_phase_control_points) {
+      phases.Append(Value::Numbers(points));
+    }
+    value.Set("loop_phase_control_points_rad", std::move(phases));
+  }
+  if (!timed.joint_path.empty()) {
+    Value path = Value::Array();
+    for (const JointSample& sample : timed.joint_path) {
+      Value joints = Value::Array();
+      joints.Append(sample.t_s);
+      for (const double angle : sample.position) joints.Append(angle);
+      path.Append(std::move(joints));
+    }
+    value.Set("joint_path_t_s_q_rad", std::move(path));
+  }
+  return value;
 }
 
 std::string Refusal::Describe() const {

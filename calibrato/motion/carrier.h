@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calibrato/motion/motion.h"
+#include "calibrato/motion/time_law.h"
 #include "calibrato/sensors/rig.h"
 
 namespace calibrato {
@@ -30,15 +31,22 @@ struct JointSample {
 };
 
 /// A motion that its carrier can make, with its time law: each loop stretched by the smallest
-/// factor
-/// >= 1 that keeps every velocity and acceleration within the carrier's limits.
+/// factor >= 1 that keeps every velocity and acceleration within the carrier's limits, or, under
+/// optimal timing, about as fast as they allow.
 struct TimedMotion {
   Motion motion;                        ///< As planned: scaled, if scaling was allowed.
   double scale = 1.0;                   ///< What all coefficients were multiplied by, in (0, 1].
   std::vector<double> loop_duration_s;  ///< After stretching.
+  /// How each loop's phase runs through that time: control points of TimeLaw. Empty for the
+  /// quintic, and none at all where all loops are quintic.
+  std::vector<std::vector<double>> loop_phase_control_points;
   /// Arm only: one sample a way-point, 62 a loop, the closing one last. The joint path is
   /// continuous over loops and every loop returns to the same joint angles.
   std::vector<JointSample> joint_path;
+
+  /// @param laws  One a loop.
+  void SetTimeLaws(const std::vector<TimeLaw>& laws);
+  [[nodiscard]] TimeLaw LawOf(size_t loop) const;
 
   [[nodiscard]] double duration_s() const;
   /// @param t_s  In [0, duration_s()]; clamped outside.
@@ -54,6 +62,10 @@ struct CarrierPath {
 };
 [[nodiscard]] CarrierPath PlannedPath(const TimedMotion& motion);
 
+/// The motion with how it runs, for MOTION.yaml of a recording: beside what ToValue(Motion) gives,
+/// scale, loop_duration_s, loop_phase_control_points_rad, joint_path_t_s_q_rad (docs/formats.md).
+[[nodiscard]] Value ToValue(const TimedMotion& timed);
+
 /// Why a carrier can't make a motion: the first limit broken, in the order of time. Never a partial
 /// motion.
 struct Refusal {
@@ -65,6 +77,7 @@ struct Refusal {
   std::string unit;
   int num_bad_way_points = 0;  ///< Of all loops' way-points ...
   int num_way_points = 0;      ///< ... of which there are so many.
+  std::string remedy = "make it smaller, or add --scale-to-fit";  ///< What to try.
   /// "joint 4 lower limit at loop 3, way-point 17: -3.11 rad, allowed -3.07 rad (6 of 248
   /// way-points do not fit)"; loops counted from 1, for people.
   [[nodiscard]] std::string Describe() const;

@@ -162,6 +162,35 @@ TEST(TimedMotion, RestsAtTheBasePoseBetweenLoopsAndBeyondItsEnds) {
   }
 }
 
+TEST(TimedMotion, TellsItsReadersHowItsPhaseRuns) {
+  Motion motion = HandcraftedMotion(Task::kExtrinsic);
+  const Value quintic = ToValue(std::get<TimedMotion>(PlanMotion(motion, PaperRig())));
+  EXPECT_EQ(quintic.Find("loop_phase_control_points_rad"), nullptr);
+  EXPECT_EQ(quintic.Find("joint_path_t_s_q_rad"), nullptr);
+  motion.timing = Timing::kOptimal;
+  const TimedMotion timed = std::get<TimedMotion>(PlanMotion(motion, PaperRig()));
+  const Value optimal = ToValue(timed);
+  EXPECT_EQ(optimal.At("timing").AsString(), "optimal");
+  ASSERT_EQ(optimal.At("loop_duration_s").size(), 3u);
+  // The phase in the middle of the first loop from what is written alone, by de Boor's recursion.
+  const Value& points = optimal.At("loop_phase_control_points_rad").elements().at(0);
+  std::vector<double> c = points.AsDoubles(points.size());
+  const double position = 0.37 * static_cast<double>(c.size() - 3);
+  const auto segment = static_cast<size_t>(position);
+  const double u = position - static_cast<double>(segment);
+  std::vector<double> d(c.begin() + static_cast<std::ptrdiff_t>(segment),
+                        c.begin() + static_cast<std::ptrdiff_t>(segment) + 4);
+  for (int level = 1; level <= 3; ++level) {
+    for (int j = 3; j >= level; --j) {
+      const double share = (u + 3 - j) / (4 - level);
+      d[j] = (1.0 - share) * d[j - 1] + share * d[j];
+    }
+  }
+  const double t_s = 0.37 * timed.loop_duration_s[0];
+  const Rigid3 expected = LoopPoseAt(motion.base_pose, motion.loops[0].coefficients, d[3]);
+  EXPECT_LT(timed.At(t_s).T_b_e.DifferenceTo(expected).norm(), 1e-12);
+}
+
 TEST(Refusal, DescribesItselfAndCountsLoopsFromOne) {
   Refusal refusal{.limit = "joint 4 lower limit",
                   .loop = 2,

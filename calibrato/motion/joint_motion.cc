@@ -90,24 +90,24 @@ JointMotion LoopJointSpline::At(const Phase& phase) const {
                   first * phase.third};
 }
 
-JointTrajectory::JointTrajectory(const TimedMotion& motion)
-    : loop_duration_s_(motion.loop_duration_s) {
-  assert(!motion.joint_path.empty() &&
-         motion.joint_path.size() == kNumWayPoints * motion.loop_duration_s.size());
+JointTrajectory::JointTrajectory(const TimedMotion& motion) {
+  const size_t num_loops = motion.loop_duration_s.size();
+  assert(!motion.joint_path.empty() && motion.joint_path.size() == kNumWayPoints * num_loops);
   JointPath path;
   path.start = motion.joint_path.back().position;
   auto sample = motion.joint_path.begin();
-  for (size_t loop = 0; loop < loop_duration_s_.size(); ++loop) {
+  for (size_t loop = 0; loop < num_loops; ++loop) {
     for (JointVector& q : path.loops.emplace_back()) q = (sample++)->position;
     ++sample;  // the closing way-point is the start
+    laws_.push_back(motion.LawOf(loop));
   }
-  for (size_t loop = 0; loop < loop_duration_s_.size(); ++loop) loops_.emplace_back(path, loop);
+  for (size_t loop = 0; loop < num_loops; ++loop) loops_.emplace_back(path, loop);
 }
 
 JointMotion JointTrajectory::At(double t_s) const {
   size_t loop = 0;
-  while (loop + 1 < loops_.size() && t_s > loop_duration_s_[loop]) t_s -= loop_duration_s_[loop++];
-  return loops_[loop].At(QuinticPhaseAt(t_s, loop_duration_s_[loop]));
+  while (loop + 1 < loops_.size() && t_s > laws_[loop].duration_s) t_s -= laws_[loop++].duration_s;
+  return loops_[loop].At(PhaseAt(laws_[loop], t_s));
 }
 
 }  // namespace calibrato

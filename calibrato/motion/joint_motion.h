@@ -43,7 +43,7 @@ class JointTrajectory {
 
  private:
   std::vector<LoopJointSpline> loops_;
-  std::vector<double> loop_duration_s_;
+  std::vector<TimeLaw> laws_;
 };
 
 }  // namespace calibrato

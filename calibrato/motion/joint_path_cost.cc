@@ -1,5 +1,7 @@
 #include "calibrato/motion/joint_path_cost.h"
 
+#include <algorithm>
+
 namespace calibrato {
 namespace {
 
@@ -23,18 +25,33 @@ double JointPathCost::Step(const JointVector& step) {
 }
 
 double JointPathCost::Wall(const JointVector& q) const {
-  return 0.5 * weight *
-         (IntoLowerWall(q, range, margin).squaredNorm() +
-          IntoUpperWall(q, range, margin).squaredNorm());
+  double cost = 0.5 * weight *
+                (IntoLowerWall(q, range, margin).squaredNorm() +
+                 IntoUpperWall(q, range, margin).squaredNorm());
+  for (const KeptDistance& kept : kept_distances) {
+    const double missing = std::max(0.0, kept.margin - kept.distance(q));
+    cost += 0.5 * kept.weight * missing * missing;
+  }
+  return cost;
 }
 
-JointVector JointPathCost::WallGradient(const JointVector& q) const {
-  return weight * (IntoUpperWall(q, range, margin) - IntoLowerWall(q, range, margin));
-}
-
-JointVector JointPathCost::WallCurvature(const JointVector& q) const {
-  const JointVector into = IntoUpperWall(q, range, margin) + IntoLowerWall(q, range, margin);
-  return weight * (into.array() > 0.0).cast<double>();
+JointPathCost::Derivatives JointPathCost::WallAlong(const JointVector& q,
+                                                    const JointVector& direction) const {
+  const JointVector upper = IntoUpperWall(q, range, margin);
+  const JointVector lower = IntoLowerWall(q, range, margin);
+  const JointVector curvature = weight * ((upper + lower).array() > 0.0).cast<double>();
+  Derivatives along{weight * direction.dot(upper - lower), direction.cwiseAbs2().dot(curvature)};
+  for (const KeptDistance& kept : kept_distances) {
+    const double missing = kept.margin - kept.distance(q);
+    if (!(missing > 0.0)) continue;
+    constexpr double kStep = 1e-4;  // [rad]
+    const double slope =
+        (kept.distance(q + kStep * direction) - kept.distance(q - kStep * direction)) /
+        (2.0 * kStep);
+    along.first -= kept.weight * missing * slope;
+    along.second += kept.weight * slope * slope;
+  }
+  return along;
 }
 
 }  // namespace calibrato

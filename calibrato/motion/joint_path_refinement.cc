@@ -60,17 +60,18 @@ Model BuildModel(const JointPath& path, const JointPath& directions,
   Model model;
   const JointVector& n0 = directions.start;
   const auto num_loops = static_cast<double>(path.loops.size());
-  model.start_gradient = n0.dot(path_cost.WallGradient(path.start));
-  model.start_diagonal =
-      2.0 * num_loops * dot(n0, n0) + n0.cwiseAbs2().dot(path_cost.WallCurvature(path.start));
+  const JointPathCost::Derivatives start_wall = path_cost.WallAlong(path.start, n0);
+  model.start_gradient = start_wall.first;
+  model.start_diagonal = 2.0 * num_loops * dot(n0, n0) + start_wall.second;
   for (size_t loop = 0; loop < path.loops.size(); ++loop) {
     LoopModel& m = model.loops.emplace_back();
     for (int i = 0; i < kNumInner; ++i) {
       const JointVector& n = directions.loops[loop][i];
       const JointVector& q = path.loops[loop][i];
       const JointVector bend = 2.0 * q - path.At(loop, i) - path.At(loop, i + 2);
-      m.gradient[i] = dot(n, bend) + n.dot(path_cost.WallGradient(q));
-      m.diagonal[i] = 2.0 * dot(n, n) + n.cwiseAbs2().dot(path_cost.WallCurvature(q));
+      const JointPathCost::Derivatives wall = path_cost.WallAlong(q, n);
+      m.gradient[i] = dot(n, bend) + wall.first;
+      m.diagonal[i] = 2.0 * dot(n, n) + wall.second;
       if (i > 0) m.off_diagonal[i - 1] = -dot(n, directions.loops[loop][i - 1]);
     }
     m.first_with_start = -dot(n0, directions.loops[loop].front());

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "calibrato/motion/joint_path_search.h"
 #include "calibrato/motion/motion.h"
+#include "calibrato/motion/singularity.h"
 
 namespace calibrato {
 namespace {
@@ -82,6 +85,26 @@ TEST(RefineJointPath, LeadsOutOfAWallWhereThereIsRoom) {
   const JointPathCost path_cost{.margin = -JointLimitExcess(*inside) + 0.05, .weight = 100.0};
   const JointPath refined = RefineJointPath(poses, path, path_cost);
   EXPECT_LT(path_cost.Wall(refined.start), 0.5 * path_cost.Wall(*inside));
+}
+
+TEST(RefineJointPath, LeadsAwayFromASingularity) {
+  // All way-points stand near a singular shoulder; the redundancy turns the elbow out of it.
+  JointVector near;
+  near << 0.2, 0.03, 0.5 * std::numbers::pi, -2.0, 0.3, 1.8, 0.7;
+  ASSERT_LT(SingularityDistance(near), 0.5 * kMinSingularityDistance);
+  PosePath poses;
+  poses.start = PandaPose(near, nullptr);
+  poses.loops.emplace_back().fill(poses.start);
+  JointPath path;
+  path.start = near;
+  path.loops.emplace_back().fill(near);
+  JointPathCost path_cost;
+  path_cost.kept_distances = {{SingularityDistance, 2.0 * kMinSingularityDistance, 1e4}};
+  const JointPath refined = RefineJointPath(poses, path, path_cost);
+  for (int i = 0; i < kNumWayPoints; ++i) {
+    EXPECT_GT(SingularityDistance(refined.At(0, i)), kMinSingularityDistance);
+    EXPECT_LT(PandaPose(refined.At(0, i), nullptr).DifferenceTo(poses.start).norm(), 1e-9);
+  }
 }
 
 }  // namespace

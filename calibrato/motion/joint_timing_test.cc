@@ -26,7 +26,7 @@ JointPath SinePath(int joint, double amplitude) {
 }
 
 TEST(SmallestStretch, IsOneForASlowLoop) {
-  EXPECT_EQ(SmallestStretch(SinePath(2, 0.01), 0, 5.0), 1.0);
+  EXPECT_EQ(SmallestStretch(SinePath(2, 0.01), 0, {5.0, {}}), 1.0);
 }
 
 TEST(SmallestStretch, MeetsTheLimitsOfAKnownPathExactly) {
@@ -44,7 +44,8 @@ TEST(SmallestStretch, MeetsTheLimitsOfAKnownPathExactly) {
                            std::sqrt(std::abs(acceleration) / Limits().acceleration[joint])});
     }
     EXPECT_GT(expected, 1.0);
-    EXPECT_NEAR(SmallestStretch(SinePath(joint, amplitude), 0, 2.0), expected, 2e-3 * expected);
+    EXPECT_NEAR(SmallestStretch(SinePath(joint, amplitude), 0, {2.0, {}}), expected,
+                2e-3 * expected);
   }
 }
 
@@ -54,35 +55,37 @@ TEST(SmallestStretch, IsOneWhereALimitIsJustMetAndMoreBeyondIt) {
   const JointPath path = SinePath(1, 0.3);
   const LoopJointSpline spline(path, 0);
   const double duration_s = 5.0;
-  ASSERT_EQ(SmallestStretch(path, 0, duration_s), 1.0);
+  ASSERT_EQ(SmallestStretch(path, 0, {duration_s, {}}), 1.0);
   const double stretch = 1.3;
   PandaLimits jerk = Limits();
   PandaLimits torque = Limits();
   jerk.jerk[1] = torque.torque[1] = 0.0;
-  for (int k = 0; k <= 500; ++k) {
+  constexpr int kNumInstants = 50'000;
+  for (int k = 0; k <= kNumInstants; ++k) {
     const JointMotion joints =
-        spline.At(QuinticPhaseAt(stretch * duration_s * k / 500.0, stretch * duration_s));
+        spline.At(QuinticPhaseAt(stretch * duration_s * k / kNumInstants, stretch * duration_s));
     jerk.jerk[1] = std::max(jerk.jerk[1], std::abs(joints.jerk[1]));
     torque.torque[1] =
         std::max(torque.torque[1],
                  std::abs(PandaTorque(joints.position, joints.velocity, joints.acceleration)[1]));
   }
-  EXPECT_NEAR(SmallestStretch(path, 0, duration_s, jerk), stretch, 1e-9);
-  EXPECT_NEAR(SmallestStretch(path, 0, duration_s, torque), stretch, 1e-9);
-  EXPECT_NEAR(SmallestStretch(path, 0, stretch * duration_s, torque), 1.0, 1e-9);
+  // But for what lies between the instants of either side.
+  EXPECT_NEAR(SmallestStretch(path, 0, {duration_s, {}}, jerk), stretch, 1e-5);
+  EXPECT_NEAR(SmallestStretch(path, 0, {duration_s, {}}, torque), stretch, 1e-5);
+  EXPECT_NEAR(SmallestStretch(path, 0, {stretch * duration_s, {}}, torque), 1.0, 1e-5);
 }
 
 TEST(SmallestStretch, IsInfiniteWhereTheArmCannotHoldItself) {
   PandaLimits weak = Limits();
   weak.torque[1] = 0.0;
-  EXPECT_EQ(SmallestStretch(SinePath(1, 0.3), 0, 5.0, weak),
+  EXPECT_EQ(SmallestStretch(SinePath(1, 0.3), 0, {5.0, {}}, weak),
             std::numeric_limits<double>::infinity());
 }
 
 TEST(TimedJointPath, PassesEachWayPointAtItsPhase) {
   JointPath path = SinePath(3, 0.1);
   path.loops.push_back(path.loops[0]);
-  const std::vector<JointSample> samples = TimedJointPath(path, {5.0, 8.0});
+  const std::vector<JointSample> samples = TimedJointPath(path, {{5.0, {}}, {8.0, {}}});
   ASSERT_EQ(samples.size(), 124u);
   for (int i = 1; i <= 62; ++i) {
     EXPECT_NEAR(QuinticPhaseAt(samples[i - 1].t_s, 5.0).theta, WayPointPhase(i), 1e-9);

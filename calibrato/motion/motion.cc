@@ -13,6 +13,7 @@ namespace {
 // In the order of the enums.
 const std::vector<std::string> kCarrierNames = {"free", "arm"};
 const std::vector<std::string> kTaskNames = {"intrinsic", "extrinsic", "joint"};
+const std::vector<std::string> kTimingNames = {"quintic", "optimal"};
 
 // An enum's value from its name. @throws InputError that gives all names.
 template <typename Enum>
@@ -68,16 +69,21 @@ Carrier CarrierFromName(const std::string& name) {
   return FromName<Carrier>("carrier", name, kCarrierNames);
 }
 
+std::string TimingName(Timing timing) { return kTimingNames[static_cast<size_t>(timing)]; }
+Timing TimingFromName(const std::string& name) {
+  return FromName<Timing>("timing", name, kTimingNames);
+}
+
 std::string TaskName(Task task) { return kTaskNames[static_cast<size_t>(task)]; }
 Task TaskFromName(const std::string& name) { return FromName<Task>("task", name, kTaskNames); }
 
 int NumLoops(Task task) { return task == Task::kExtrinsic ? 3 : 4; }
 
 Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings) {
-  // A timed joint path is written for the arm's sake; it follows from the rest and is not read.
+  // How the motion ran is written for its readers; it follows from the rest and is not read.
   AppendUnknownKeys(value,
-                    {"carrier", "base_pose", "loops", "provenance", "scale", "loop_duration_s",
-                     "joint_path_t_s_q_rad"},
+                    {"carrier", "timing", "base_pose", "loops", "provenance", "scale",
+                     "loop_duration_s", "loop_phase_control_points_rad", "joint_path_t_s_q_rad"},
                     warnings);
   Motion motion;
   const Value& carrier = value.At("carrier");
@@ -87,6 +93,15 @@ Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings) {
   } catch (const InputError&) {
     carrier.Fail("unknown carrier '" + carrier_name + "'", "there are free and arm",
                  "write carrier: free or carrier: arm");
+  }
+  if (const Value* timing = value.Find("timing")) {
+    const std::string timing_name = timing->AsString();
+    try {
+      motion.timing = TimingFromName(timing_name);
+    } catch (const InputError&) {
+      timing->Fail("unknown timing '" + timing_name + "'", "there are quintic and optimal",
+                   "write timing: quintic or timing: optimal");
+    }
   }
   const Value& base_pose = value.At("base_pose");
   AppendUnknownKeys(base_pose, {"xyz_m", "rpy_rad"}, warnings);
@@ -111,8 +126,9 @@ Value ToValue(const Motion& motion) {
   Value loops = Value::Array();
   for (const Loop& loop : motion.loops) loops.Append(ToValue(loop));
   Value value = Value::Object();
-  value.Set("carrier", CarrierName(motion.carrier))
-      .Set("base_pose", std::move(base_pose))
+  value.Set("carrier", CarrierName(motion.carrier));
+  if (motion.timing != Timing::kQuintic) value.Set("timing", TimingName(motion.timing));
+  value.Set("base_pose", std::move(base_pose))
       .Set("loops", std::move(loops))
       .Set("provenance", motion.provenance);
   return value;

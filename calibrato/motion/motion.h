@@ -16,6 +16,14 @@ enum class Carrier {
 [[nodiscard]] std::string CarrierName(Carrier carrier);          ///< "free", "arm"
 [[nodiscard]] Carrier CarrierFromName(const std::string& name);  ///< @throws InputError
 
+/// How time is laid along a loop.
+enum class Timing {
+  kQuintic,  ///< A fifth-degree phase of the wished duration, stretched as far as limits need.
+  kOptimal,  ///< As fast as the carrier's limits allow (optimal_timing.h), whatever was wished.
+};
+[[nodiscard]] std::string TimingName(Timing timing);           ///< "quintic", "optimal"
+[[nodiscard]] Timing TimingFromName(const std::string& name);  ///< @throws InputError
+
 enum class Task {
   kIntrinsic,  ///< The camera.
   kExtrinsic,  ///< Camera and IMU, the camera being known.
@@ -33,6 +41,7 @@ struct Loop {
 /// A calibration motion: loops through one base pose, one after the other.
 struct Motion {
   Carrier carrier = Carrier::kFree;
+  Timing timing = Timing::kQuintic;
   BasePose base_pose;
   std::vector<Loop> loops;
   Value provenance;  ///< Where it comes from, for people: method, seed, ... null if unknown.

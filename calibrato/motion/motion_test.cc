@@ -87,6 +87,23 @@ TEST(MotionYaml, RefusesWhatIsNoMotionAndNamesTheKey) {
   }
 }
 
+TEST(MotionYaml, KeepsItsTimingAndIsQuinticWithoutOne) {
+  Motion motion;
+  motion.loops.resize(1);
+  EXPECT_EQ(ToValue(motion).Find("timing"), nullptr);
+  EXPECT_EQ(MotionFromValue(ToValue(motion), nullptr).timing, Timing::kQuintic);
+  motion.timing = Timing::kOptimal;
+  EXPECT_EQ(MotionFromValue(ToValue(motion), nullptr).timing, Timing::kOptimal);
+  try {
+    (void)MotionFromValue(
+        ParseYaml(FileWith("carrier: ", "timing: optimum\ncarrier: "), "motion.yaml"), nullptr);
+    ADD_FAILURE();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("quintic and optimal"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(MotionYaml, RefusesNoLoopsAndMoreThanAThousand) {
   Motion motion;
   EXPECT_THROW((void)MotionFromValue(ToValue(motion), nullptr), InputError);

@@ -198,6 +198,8 @@ std::vector<JointVector> PandaInverse(const Rigid3& T_b_e, double q7) {
   return solutions;
 }
 
+double StretchedElbow() { return std::atan2(kSine, kCosine); }
+
 double PandaShortfall(const Rigid3& T_b_e, double q7) {
   const Wrist wrist = WristAt(T_b_e, q7);
   const double cosine_of_opening = CosineOfElbowOpening(wrist);

@@ -59,6 +59,9 @@ struct PandaAxes {
 /// PandaInverse has solutions [m].
 [[nodiscard]] double PandaShortfall(const Rigid3& T_b_e, double q7);
 
+/// Joint 4 where the arm is stretched out: its offsets make that -0.47, not 0 [rad].
+[[nodiscard]] double StretchedElbow();
+
 /// The joint angles near `q` that reach T_b_e to 1e-10, by Newton's method, damped near
 /// singularities; nothing if it does not converge.
 [[nodiscard]] std::optional<JointVector> PandaInverseNear(const Rigid3& T_b_e,

@@ -51,8 +51,9 @@ double Cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y(
 
 }  // namespace
 
-LensOutline::LensOutline(const Camera& camera, const Rigid3& T_c_g)
+LensOutline::LensOutline(const Camera& camera, const LensField& residual, const Rigid3& T_c_g)
     : camera_(camera),
+      residual_(residual),
       T_c_g_(T_c_g),
       rim_angle_(RimAngle(camera)),
       rim_cotangent_(std::cos(rim_angle_) / std::sin(rim_angle_)) {
@@ -64,12 +65,18 @@ LensOutline::LensOutline(const Camera& camera, const Rigid3& T_c_g)
                 : Vector2d(kNan, kNan);
 }
 
-LensOutline::LensOutline(const Camera& camera, const std::function<Rigid3(double row)>& pose_of_row)
-    : LensOutline(camera, pose_of_row(0.5 * (camera.resolution.height - 1))) {
+LensOutline::LensOutline(const Camera& camera, const LensField& residual,
+                         const std::function<Rigid3(double row)>& pose_of_row)
+    : LensOutline(camera, residual, pose_of_row(0.5 * (camera.resolution.height - 1))) {
   pose_of_row_ = pose_of_row;
 }
 
 Vector2d LensOutline::PixelOf(const Vector3d& p_c) const {
+  const Vector2d pixel = ModelledPixelOf(p_c);
+  return pixel + residual_.At(pixel);
+}
+
+Vector2d LensOutline::ModelledPixelOf(const Vector3d& p_c) const {
   const bool is_within = p_c.z() >= rim_cotangent_ * p_c.head<2>().norm();
   const Vector3d direction = is_within ? p_c : AtAngle(p_c, rim_angle_);
   if (const std::optional<Vector2d> pixel = camera_.model.Project(direction)) return *pixel;

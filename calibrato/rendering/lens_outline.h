@@ -5,12 +5,14 @@
 
 #include "calibrato/geometry/rigid3.h"
 #include "calibrato/sensors/camera_chain.h"
+#include "calibrato/sensors/lens_residual.h"
 
 namespace calibrato {
 
 /// What a lens makes of curves on a board: their images, as chains of straight sides that are
 /// nowhere further from the true curve than kMaxChordError. Every camera model serves, through its
-/// Project alone, so that a drawn corner lies exactly where the model says.
+/// Project alone, so that a drawn corner lies exactly where the model says (and, if the lens has a
+/// residual, by that beside it).
 ///
 /// Parts of a board may lie behind the camera or outside the model's domain. They are moved, around
 /// the camera's centre and away from the opposite of the optical axis, to the rim of what can be
@@ -23,13 +25,15 @@ class LensOutline {
   static constexpr double kMaxChordError = 1e-4;  ///< [px]
 
   /// @pre The camera is on the board's front side.
-  LensOutline(const Camera& camera, const Rigid3& T_c_g);
+  /// @param residual  What the lens adds to what its model says; lives as long as the outline.
+  LensOutline(const Camera& camera, const LensField& residual, const Rigid3& T_c_g);
 
   /// Through a rolling shutter: each row of the image sees the board at a pose of its own. A point
   /// lies where the row that it falls on sees it.
   /// @param pose_of_row  T_c_g at the instant of an image row [px], from -height to 2 * height; it
   /// changes by much less than a row from one row to the next.
-  LensOutline(const Camera& camera, const std::function<Rigid3(double row)>& pose_of_row);
+  LensOutline(const Camera& camera, const LensField& residual,
+              const std::function<Rigid3(double row)>& pose_of_row);
 
   /// Takes the ends of a side [px].
   using Sink = std::function<void(const Eigen::Vector2d& from, const Eigen::Vector2d& to)>;
@@ -59,8 +63,10 @@ class LensOutline {
   bool IsStraight(const Sample* samples) const;
   bool IsOutside(const Sample* samples) const;
   Eigen::Vector2d PixelOf(const Eigen::Vector3d& p_c) const;
+  Eigen::Vector2d ModelledPixelOf(const Eigen::Vector3d& p_c) const;
 
   const Camera& camera_;
+  const LensField& residual_;
   Rigid3 T_c_g_;                               // at the image's middle row
   std::function<Rigid3(double)> pose_of_row_;  // empty: the same for all
   double rim_angle_;  // [rad] off the optical axis; all that is in the image is within

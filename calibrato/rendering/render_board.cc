@@ -161,8 +161,8 @@ Exposure RenderBoard(const BoardPattern& pattern, const Camera& camera, const Ri
   const int fineness = CellsPerPixel(scene.blur_px);
   SceneSum sum(WholeOf(camera.resolution), fineness);
   if (IsBeforeTheBoard(T_c_g)) {
-    sum.AddBoard(LensOutline(camera, T_c_g), pattern, scene.white - scene.background,
-                 scene.black - scene.white);
+    sum.AddBoard(LensOutline(camera, scene.lens_residual, T_c_g), pattern,
+                 scene.white - scene.background, scene.black - scene.white);
   }
   Exposure exposure{camera.resolution, Pixels(std::move(sum).Finish(scene.background),
                                               camera.resolution, fineness, scene.blur_px)};
@@ -177,7 +177,7 @@ BoardLayer RenderBoardLayer(const BoardPattern& pattern, const Camera& camera,
   std::vector<LensOutline> outlines;
   for (const PoseOfRow& pose_of_row : instants) {
     if (!IsBeforeTheBoard(pose_of_row(0.5 * (camera.resolution.height - 1)))) continue;
-    outlines.emplace_back(camera, pose_of_row);
+    outlines.emplace_back(camera, scene.lens_residual, pose_of_row);
   }
   const size_t num_pixels = 1UL * camera.resolution.width * camera.resolution.height;
   if (outlines.empty()) {

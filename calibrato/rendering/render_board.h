@@ -9,6 +9,7 @@
 #include "calibrato/rendering/board_pattern.h"
 #include "calibrato/sensors/camera_chain.h"
 #include "calibrato/sensors/image.h"
+#include "calibrato/sensors/lens_residual.h"
 
 namespace calibrato {
 
@@ -25,6 +26,7 @@ struct Scene {
   double vignetting = 0.0;
   /// Standard deviation of the lens's point spread function, a round Gaussian [px] >= 0.
   double blur_px = 0.0;
+  LensField lens_residual;  ///< What the lens adds to what the camera's model says.
 };
 
 /// The light on each pixel, before noise and rounding.
@@ -34,7 +36,7 @@ struct Exposure {
 };
 
 /// The image of a board through any lens, so exact that detectors can be judged by it: corner k is
-/// at camera.model.Project(T_c_g * BoardPoints(board).col(k)).
+/// at camera.model.Project(T_c_g * BoardPoints(board).col(k)), plus the lens's residual there.
 ///
 /// Each pixel is the mean of the scene over the pixel's area. It is computed from the areas that
 /// the outlines of everything black cut out of each pixel, in closed form, the outlines being
@@ -63,7 +65,8 @@ using PoseOfRow = std::function<Rigid3(double row)>;
 /// The mean over several instants of one exposure, each as exact as RenderBoard's image.
 /// @param instants  At least one: poses evenly spread over the exposure, at the middles of its
 /// parts.
-/// @param scene  Its black, white and blur_px; light and background are the caller's to add.
+/// @param scene  Its black, white, blur_px and lens_residual; light and background are the caller's
+/// to add.
 [[nodiscard]] BoardLayer RenderBoardLayer(const BoardPattern& pattern, const Camera& camera,
                                           const std::vector<PoseOfRow>& instants,
                                           const Scene& scene);

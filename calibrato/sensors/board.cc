@@ -115,4 +115,10 @@ std::string Describe(const Board& board) {
   return std::visit([](const auto& which) { return Words(which); }, board);
 }
 
+int PointsPerPart(const Board& board) {
+  if (std::holds_alternative<Charuco>(board)) return 1;
+  if (std::holds_alternative<AprilGrid>(board)) return PointsPerTag(board);
+  return static_cast<int>(BoardPoints(board).cols());
+}
+
 }  // namespace calibrato

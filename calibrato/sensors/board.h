@@ -128,6 +128,10 @@ using Board = std::variant<Checkerboard, AprilGrid, CircleGrid, Charuco>;
 /// AprilGrid, else 1.
 [[nodiscard]] int PointsPerTag(const Board& board);
 
+/// How many points, by number, are found together or not at all: those of a tag of an AprilGrid,
+/// one of a ChArUco board, all of a checkerboard or a grid of circles.
+[[nodiscard]] int PointsPerPart(const Board& board);
+
 /// "checkerboard of 6 rows x 7 columns of inner corners, squares of 60 x 60 mm", for people.
 [[nodiscard]] std::string Describe(const Board& board);
 

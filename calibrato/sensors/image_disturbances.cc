@@ -7,7 +7,7 @@ ImageDisturbances ImageDisturbancesFromValue(const Value& value,
   if (warnings != nullptr) {
     const std::vector<std::string> unknown = value.UnknownKeys(
         {"line_delay_s", "read_noise", "shot_noise", "vignetting", "lighting_gradient",
-         "defocus_px", "stamp_jitter_s", "drop_probability"});
+         "defocus_px", "stamp_jitter_s", "drop_probability", "exposure_variation"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   // @param most  What the number must not exceed.
@@ -28,6 +28,7 @@ ImageDisturbances ImageDisturbancesFromValue(const Value& value,
   read("defocus_px", 20.0, &images.defocus_px);
   read("stamp_jitter_s", 0.1, &images.stamp_jitter_s);
   read("drop_probability", 1.0, &images.drop_probability);
+  read("exposure_variation", 1.0, &images.exposure_variation);
   if (const Value* x = value.Find("lighting_gradient")) {
     images.lighting_gradient = Eigen::Vector2d(x->AsDoubles(2).data());
     if (!(images.lighting_gradient.cwiseAbs().sum() <= 1.0)) {
@@ -47,7 +48,8 @@ Value ToValue(const ImageDisturbances& disturbances) {
       .Set("lighting_gradient", Value::Numbers(disturbances.lighting_gradient))
       .Set("defocus_px", disturbances.defocus_px)
       .Set("stamp_jitter_s", disturbances.stamp_jitter_s)
-      .Set("drop_probability", disturbances.drop_probability);
+      .Set("drop_probability", disturbances.drop_probability)
+      .Set("exposure_variation", disturbances.exposure_variation);
   return value;
 }
 

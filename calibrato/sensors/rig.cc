@@ -10,10 +10,13 @@ namespace {
 // Below it two images are further apart than any motion is long, and in the end than stamps reach.
 constexpr double kMinCameraRateHz = 0.01;
 constexpr double kMaxCameraRateHz = 1000.0;
+constexpr double kMaxStandMotion = 0.1;  // [m]
+constexpr double kMaxFingerReach = 1.0;  // [m]
 
 CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* warnings) {
   const std::vector<std::string> unknown =
-      value.UnknownKeys({"stddev_px", "blur_factor", "blur_knee_px", "blur_at_half", "blur_slope"});
+      value.UnknownKeys({"stddev_px", "blur_factor", "blur_knee_px", "blur_at_half", "blur_slope",
+                         "lost_at_half_px", "lost_slope_px", "phase_error_px"});
   if (warnings != nullptr) warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   CornerNoise noise;
   if (const Value* x = value.Find("stddev_px")) noise.stddev_px = x->AsNonNegative();
@@ -21,6 +24,9 @@ CornerNoise CornerNoiseFromValue(const Value& value, std::vector<std::string>* w
   if (const Value* x = value.Find("blur_knee_px")) noise.blur_knee_px = x->AsPositive();
   if (const Value* x = value.Find("blur_at_half")) noise.blur_at_half = x->AsPositive();
   if (const Value* x = value.Find("blur_slope")) noise.blur_slope = x->AsPositive();
+  if (const Value* x = value.Find("lost_at_half_px")) noise.lost_at_half_px = x->AsPositive();
+  if (const Value* x = value.Find("lost_slope_px")) noise.lost_slope_px = x->AsPositive();
+  if (const Value* x = value.Find("phase_error_px")) noise.phase_error_px = x->AsNonNegative();
   return noise;
 }
 
@@ -31,10 +37,17 @@ double CornerNoise::Stddev(double blur_px) const {
                     blur_factor * blur_px * std::sqrt(1.0 + std::pow(blur_px / blur_knee_px, 6)));
 }
 
+double CornerNoise::DetectionProbability(double blur_px, double spacing_px) const {
+  const double smeared = std::exp((blur_px / spacing_px - blur_at_half) / blur_slope);
+  const double too_long = std::exp((blur_px - lost_at_half_px) / lost_slope_px);
+  return 1.0 / (1.0 + smeared) / (1.0 + too_long);
+}
+
 Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (warnings != nullptr) {
-    const std::vector<std::string> unknown = value.UnknownKeys(
-        {"cameras", "imu", "board", "T_e_c0", "exposure_s", "rate_hz", "noise", "images", "arm"});
+    const std::vector<std::string> unknown =
+        value.UnknownKeys({"cameras", "imu", "board", "T_e_c0", "exposure_s", "rate_hz", "noise",
+                           "images", "arm", "lens_residual", "stand_motion_m"});
     warnings->insert(warnings->end(), unknown.begin(), unknown.end());
   }
   Rig rig;
@@ -60,6 +73,15 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   }
   rig.board = BoardFromValue(value.At("board"), warnings);
   rig.T_w_g = Rigid3FromValue(value.At("board").At("T_w_g"));
+  if (const Value* stand = value.Find("stand_motion_m")) {
+    rig.stand_motion_m = stand->AsNonNegative();
+    if (!(rig.stand_motion_m <= kMaxStandMotion)) {
+      stand->Fail("bad stand of the board", "it moves by more than 0.1 m", "write metres");
+    }
+  }
+  if (const Value* residual = value.Find("lens_residual")) {
+    rig.lens_residual = LensResidualFromValue(*residual, warnings);
+  }
   if (const Value* exposure = value.Find("exposure_s")) rig.exposure_s = exposure->AsNonNegative();
   if (const Value* rate = value.Find("rate_hz")) {
     rig.camera_rate_hz = rate->AsPositive();
@@ -78,11 +100,18 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   }
   if (const Value* arm = value.Find("arm")) {
     if (warnings != nullptr) {
-      const std::vector<std::string> unknown = arm->UnknownKeys({"limits", "disturbances"});
+      const std::vector<std::string> unknown =
+          arm->UnknownKeys({"limits", "disturbances", "finger_reach_m"});
       warnings->insert(warnings->end(), unknown.begin(), unknown.end());
     }
     if (const Value* limits = arm->Find("limits")) {
       rig.arm_limits = ArmLimitsFromValue(*limits, warnings);
+    }
+    if (const Value* reach = arm->Find("finger_reach_m")) {
+      rig.finger_reach_m = reach->AsNonNegative();
+      if (!(rig.finger_reach_m <= kMaxFingerReach)) {
+        reach->Fail("bad reach of a finger", "it is more than 1 m", "write metres");
+      }
     }
     if (const Value* disturbances = arm->Find("disturbances")) {
       rig.arm_disturbances = ArmDisturbancesFromValue(*disturbances, warnings);
@@ -102,14 +131,21 @@ Value ToValue(const Rig& rig) {
       .Set("blur_factor", rig.corner_noise.blur_factor)
       .Set("blur_knee_px", rig.corner_noise.blur_knee_px)
       .Set("blur_at_half", rig.corner_noise.blur_at_half)
-      .Set("blur_slope", rig.corner_noise.blur_slope);
+      .Set("blur_slope", rig.corner_noise.blur_slope)
+      .Set("lost_at_half_px", rig.corner_noise.lost_at_half_px)
+      .Set("lost_slope_px", rig.corner_noise.lost_slope_px)
+      .Set("phase_error_px", rig.corner_noise.phase_error_px);
   Value arm = Value::Object();
-  arm.Set("limits", ToValue(rig.arm_limits)).Set("disturbances", ToValue(rig.arm_disturbances));
+  arm.Set("limits", ToValue(rig.arm_limits))
+      .Set("disturbances", ToValue(rig.arm_disturbances))
+      .Set("finger_reach_m", rig.finger_reach_m);
   Value value = Value::Object();
   value.Set("cameras", ToValue(rig.cameras))
       .Set("imu", std::move(imu))
       .Set("board", std::move(board))
+      .Set("stand_motion_m", rig.stand_motion_m)
       .Set("T_e_c0", ToValue(rig.T_e_c0))
+      .Set("lens_residual", ToValue(rig.lens_residual))
       .Set("exposure_s", rig.exposure_s)
       .Set("rate_hz", rig.camera_rate_hz)
       .Set("noise", std::move(noise))

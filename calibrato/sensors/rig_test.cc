@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/so3.h"
@@ -28,7 +29,12 @@ Rig MakeRig() {
   rig.arm_limits.joint_upper = Eigen::Matrix<double, 7, 1>::Constant(2.5);
   rig.arm_limits.max_wrist_turn = 1.5;
   rig.arm_limits.keep_out = {{"lamp", {ExpSo3({0.0, 0.3, 0.0}), {0.5, 0.5, 0.5}}, {0.1, 0.2, 0.3}}};
+  rig.corner_noise.phase_error_px = 0.04;
+  rig.lens_residual = {.rms_px = 0.1, .seed = 5};
+  rig.stand_motion_m = 2e-4;
+  rig.finger_reach_m = 0.2;
   rig.image_disturbances.line_delay_s = 3e-5;
+  rig.image_disturbances.exposure_variation = 0.5;
   rig.image_disturbances.lighting_gradient = {0.1, -0.2};
   rig.arm_disturbances = {.mode_hz = 17.0, .mode_damping = 0.1, .torque_ripple = 0.3};
   return rig;
@@ -51,7 +57,13 @@ TEST(Rig, RoundTrip) {
   ASSERT_EQ(rig.arm_limits.keep_out.size(), 1u);
   EXPECT_EQ(rig.arm_limits.keep_out[0].name, "lamp");
   EXPECT_EQ(rig.arm_limits.keep_out[0].size_m, Eigen::Vector3d(0.1, 0.2, 0.3));
+  EXPECT_EQ(rig.corner_noise.phase_error_px, 0.04);
+  EXPECT_EQ(rig.lens_residual.rms_px, 0.1);
+  EXPECT_EQ(rig.lens_residual.seed, 5);
+  EXPECT_EQ(rig.stand_motion_m, 2e-4);
+  EXPECT_EQ(rig.finger_reach_m, 0.2);
   EXPECT_EQ(rig.image_disturbances.line_delay_s, 3e-5);
+  EXPECT_EQ(rig.image_disturbances.exposure_variation, 0.5);
   EXPECT_EQ(rig.image_disturbances.lighting_gradient, Eigen::Vector2d(0.1, -0.2));
   EXPECT_EQ(rig.arm_disturbances.mode_hz, 17.0);
   EXPECT_EQ(rig.arm_disturbances.mode_damping, 0.1);
@@ -77,6 +89,45 @@ TEST(CornerNoise, GrowsSteeplyBeyondItsKnee) {
   // Far beyond, sixteen times as much at twice the blur.
   EXPECT_NEAR(noise.Stddev(80.0) / noise.Stddev(40.0), 16.0, 1e-3);
   EXPECT_EQ(noise.Stddev(0.0), 0.03);
+}
+
+// A file that ends too soon is an error of one line that names it, or, cut behind a whole key, a
+// rig of which the rest has its defaults.
+TEST(Rig, ATruncatedFileIsAnErrorOfOneLineOrARigWithDefaults) {
+  const std::string text = ToYaml(ToValue(MakeRig()));
+  int num_errors = 0;
+  for (size_t length = 0; length < text.size(); length += 23) {
+    try {
+      const Rig rig = RigFromValue(ParseYaml(text.substr(0, length), "rig.yaml"), nullptr);
+      EXPECT_EQ(rig.cameras.size(), 1u);
+    } catch (const InputError& error) {
+      ++num_errors;
+      EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("rig.yaml"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_GT(num_errors, 10);
+}
+
+TEST(Rig, SizesOfEffectsOutOfTheirRangeAreErrorsWithTheirKey) {
+  const std::string text = ToYaml(ToValue(MakeRig()));
+  for (const auto& [from, to, key] :
+       {std::tuple("stand_motion_m: 2.0e-04", "stand_motion_m: 0.2", "stand_motion_m"),
+        std::tuple("finger_reach_m: 0.2", "finger_reach_m: -1", "finger_reach_m"),
+        std::tuple("phase_error_px: 0.04", "phase_error_px: .nan", "phase_error_px"),
+        std::tuple("rms_px: 0.1", "rms_px: 100", "rms_px"),
+        std::tuple("exposure_variation: 0.5", "exposure_variation: 1.1", "exposure_variation")}) {
+    std::string changed = text;
+    const size_t at = changed.find(from);
+    ASSERT_NE(at, std::string::npos) << from << " in\n" << text;
+    changed.replace(at, std::string(from).size(), to);
+    try {
+      (void)RigFromValue(ParseYaml(changed, "rig.yaml"), nullptr);
+      FAIL() << to;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(Rig, AnArmThatSwingsFasterThanItIsSimulatedIsAnError) {

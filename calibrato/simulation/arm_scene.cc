@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string>
 
 #include "calibrato/base/input_error.h"
@@ -32,6 +33,9 @@ InputError BadScene(const std::string& why) {
 }
 
 mjModel* Compiled(std::string_view xml) {
+  // MuJoCo keeps the file that it read last, and its handlers, for all threads.
+  static std::mutex reading;
+  const std::scoped_lock alone(reading);
   // Else MuJoCo writes warnings into a file where it runs, and at an error waits for a key.
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* what) {
@@ -80,6 +84,11 @@ void PlaceRig(const Rig& rig, const mjModel* model) {
   for (const NamedBox& thing : SurroundingsOf(rig)) {
     if (thing.name != "table") SetBox(model, thing.name.c_str(), thing.box);
   }
+  // A capsule along z of its body, longer at its far end; the second size is half its length.
+  const int finger = IdOf(model, mjOBJ_GEOM, "right finger");
+  model->geom_pos[3 * finger + 2] += 0.5 * rig.finger_reach_m;
+  model->geom_size[3 * finger + 1] += 0.5 * rig.finger_reach_m;
+  model->geom_rbound[finger] += 0.5 * rig.finger_reach_m;
   const Rigid3 T_e_i = rig.T_e_c0 * rig.T_c0_i;
   // What lay on its body's own frame when the file was compiled would stay there, but for the flag.
   const int imu = IdOf(model, mjOBJ_SITE, "imu");

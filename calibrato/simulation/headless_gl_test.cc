@@ -1,10 +1,13 @@
 #include "calibrato/simulation/headless_gl.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
+#include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/motion/paper_scene.h"
 #include "calibrato/simulation/arm_scene.h"
@@ -14,10 +17,12 @@ namespace calibrato {
 namespace {
 
 // Runs a test of this program in a process of its own: one process has one way.
-int RunInItsOwnProcess(const std::string& environment, const std::string& test) {
+int RunInItsOwnProcess(const std::string& environment, const std::string& test,
+                       const std::string& output = "/dev/null") {
   const std::string program = std::filesystem::read_symlink("/proc/self/exe");
   return std::system(
-      (environment + " '" + program + "' --gtest_filter=" + test + " > /dev/null 2>&1").c_str());
+      (environment + " '" + program + "' --gtest_filter=" + test + " > '" + output + "' 2>&1")
+          .c_str());
 }
 
 TEST(HeadlessGl, EveryWayDraws) {
@@ -44,6 +49,23 @@ TEST(HeadlessGl, SaysWhatIsMissing) {
     EXPECT_NE(what.find("--fidelity fast"), std::string::npos) << what;
   }
   EXPECT_THROW(HeadlessGl({"vulkan"}), InputError);
+}
+
+// Libraries of these names that are none, in front of those of the system.
+TEST(HeadlessGl, WithoutEglAndOsMesaOnlyImagesAreMissing) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("no_gl_" + std::to_string(getpid()));
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"libEGL.so.1", "libOSMesa.so.8"}) std::ofstream(folder / name) << "none";
+  const std::string environment = "LD_LIBRARY_PATH='" + folder.string() + "'";
+  const std::filesystem::path said = folder / "said";
+  EXPECT_NE(RunInItsOwnProcess(environment, "SceneView.DepthIsAlongTheAxisInMetres", said), 0);
+  EXPECT_NE(ReadFile(said.string(), 1'000'000)
+                .find("libEGL.so.1 is not installed; libOSMesa.so.8 is not installed"),
+            std::string::npos)
+      << ReadFile(said.string(), 1'000'000);
+  EXPECT_EQ(RunInItsOwnProcess(environment, "SimulateRun.ThePhysicalArmComesClose*"), 0);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(HeadlessGlWays, FollowTheEnvironment) {

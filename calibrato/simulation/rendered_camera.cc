@@ -12,6 +12,7 @@
 #include "calibrato/simulation/fast_simulation.h"
 #include "calibrato/simulation/headless_gl.h"
 #include "calibrato/simulation/scene_view.h"
+#include "calibrato/simulation/swaying_board.h"
 
 namespace calibrato {
 namespace {
@@ -153,20 +154,21 @@ class RenderedCamera::Parts {
     look_.lighting_gradient = images.lighting_gradient;
     look_.vignetting = images.vignetting;
     look_.blur_px = images.defocus_px;
+    look_.lens_residual = LensField(rig.lens_residual, camera_.resolution);
   }
 
-  GreyImage Take(const CarrierPath& path, double t_s, Rng& noise) {
+  GreyImage Take(const CarrierPath& path, const FrameExposure& exposed, Rng& noise) {
     const ImageDisturbances& images = rig_.image_disturbances;
     const std::function<Rigid3(double)> camera_at = [&](double t) {
       return ArmBaseInWorld() * path.at(t).T_b_e * rig_.T_e_c0;
     };
     const std::function<Rigid3(double)> board_at = [&](double t) {
-      return camera_at(t).Inverse() * rig_.T_w_g;
+      return BoardInCamera(rig_, path, t);
     };
     const int height = camera_.resolution.height;
-    const int num_instants = NumInstants(board_at, t_s);
+    const int num_instants = NumInstants(board_at, exposed);
     const auto instant = [&](int i, int n) {
-      return t_s + rig_.exposure_s * ((i + 0.5) / n - 0.5);
+      return exposed.middle_s + exposed.length_s * ((i + 0.5) / n - 0.5);
     };
     std::vector<PoseOfRow> board;
     for (int i = 0; i < num_instants; ++i) {
@@ -180,7 +182,7 @@ class RenderedCamera::Parts {
       camera.push_back(
           PosesOfRows(camera_at, instant(i, num_scene_instants), images.line_delay_s, height));
     }
-    const double middle_s = t_s + 0.5 * height * images.line_delay_s;
+    const double middle_s = exposed.middle_s + 0.5 * height * images.line_delay_s;
     const Rigid3 T_w_c = camera_at(middle_s);
     const std::optional<JointVector> joints =
         path.joints ? std::optional(path.joints(middle_s)) : std::nullopt;
@@ -190,12 +192,15 @@ class RenderedCamera::Parts {
     return Digitised(exposure, {images.read_noise, images.shot_noise}, noise);
   }
 
+  [[nodiscard]] double exposure_s() const { return rig_.exposure_s; }
+
  private:
   // As many as the fastest corner needs.
-  int NumInstants(const std::function<Rigid3(double)>& board_at, double t_s) const {
-    if (rig_.exposure_s == 0.0) return 1;
-    const Rigid3 first = board_at(t_s - 0.5 * rig_.exposure_s);
-    const Rigid3 last = board_at(t_s + 0.5 * rig_.exposure_s);
+  int NumInstants(const std::function<Rigid3(double)>& board_at,
+                  const FrameExposure& exposed) const {
+    if (exposed.length_s == 0.0) return 1;
+    const Rigid3 first = board_at(exposed.middle_s - 0.5 * exposed.length_s);
+    const Rigid3 last = board_at(exposed.middle_s + 0.5 * exposed.length_s);
     double farthest = 0.0;
     for (Eigen::Index k = 0; k < points_g_.cols(); ++k) {
       const auto a = camera_.model.Project(first * points_g_.col(k));
@@ -270,7 +275,12 @@ RenderedCamera::RenderedCamera(const Rig& rig) : parts_(std::make_unique<Parts>(
 RenderedCamera::~RenderedCamera() = default;
 
 GreyImage RenderedCamera::Take(const CarrierPath& path, double t_s, Rng& noise) const {
-  return parts_->Take(path, t_s, noise);
+  return parts_->Take(path, {t_s, parts_->exposure_s()}, noise);
+}
+
+GreyImage RenderedCamera::Take(const CarrierPath& path, const FrameExposure& exposure,
+                               Rng& noise) const {
+  return parts_->Take(path, exposure, noise);
 }
 
 int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rng& rng,
@@ -292,8 +302,9 @@ int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rn
       ++num_dropped;
       continue;
     }
-    sink({start + elapsed + Duration::FromSeconds(jitter_s), elapsed.seconds(),
-          camera.Take(path, elapsed.seconds(), noise)});
+    const FrameExposure exposure = ExposureOfFrame(rig, elapsed.seconds());
+    sink({start + elapsed + Duration::FromSeconds(jitter_s), exposure.middle_s,
+          camera.Take(path, exposure, noise)});
   }
   return num_dropped;
 }

@@ -9,6 +9,7 @@
 #include "calibrato/motion/carrier.h"
 #include "calibrato/sensors/image.h"
 #include "calibrato/sensors/rig.h"
+#include "calibrato/simulation/frame_exposure.h"
 
 namespace calibrato {
 
@@ -20,7 +21,10 @@ namespace calibrato {
 /// middle of the exposure, turned for the other instants, and seen through the lens where its rays
 /// are within 75 degrees of the axis. Then come defocus, light and vignetting, noise, rounding.
 ///
-/// Not modelled: shadows on the board, highlights, what the arm's parallax blurs, colours.
+/// Not modelled: shadows on the board, highlights, what the arm's parallax blurs, colours; a
+/// residual of the lens in what is not the board.
+///
+/// Each camera draws by itself: several may be used at once, each on one thread.
 class RenderedCamera {
  public:
   /// @throws InputError if nothing can be drawn without a screen (HeadlessGl).
@@ -31,6 +35,9 @@ class RenderedCamera {
 
   /// @param t_s  The middle of the exposure of the first row, since the motion began.
   [[nodiscard]] GreyImage Take(const CarrierPath& path, double t_s, Rng& noise) const;
+  /// ... exposed for another time than the rig's.
+  [[nodiscard]] GreyImage Take(const CarrierPath& path, const FrameExposure& exposure,
+                               Rng& noise) const;
 
  private:
   class Parts;
@@ -44,7 +51,7 @@ struct SimulatedImage {
   GreyImage image;
 };
 
-/// Takes frames at start + k / 10 s while the motion lasts, its end excluded, and hands each to
+/// Takes frames at start + k / rate while the motion lasts, its end excluded, and hands each to
 /// `sink`, in order. Each frame has a random stream of its own.
 /// @return How many frames were dropped (ImageDisturbances::drop_probability).
 int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rng& rng,

@@ -4,9 +4,15 @@
 
 #include <algorithm>
 #include <cassert>
+#include <mutex>
+#include <shared_mutex>
 
 namespace calibrato {
 namespace {
+
+// Making a context looks all of OpenGL's functions up anew, for all threads: nobody draws
+// meanwhile.
+std::shared_mutex functions_of_opengl;
 
 constexpr int kMaxGeoms = 300;
 constexpr double kNear = 0.01;  // [m]
@@ -43,6 +49,7 @@ struct SceneView::Parts {
 
 SceneView::SceneView(const ArmScene& scene, const HeadlessGl& gl)
     : parts_(new Parts{scene, gl, {}, {}}) {
+  const std::unique_lock alone(functions_of_opengl);
   gl.MakeCurrent();
   mjv_defaultScene(&parts_->drawn);
   mjv_makeScene(scene.model(), &parts_->drawn, kMaxGeoms);
@@ -52,6 +59,7 @@ SceneView::SceneView(const ArmScene& scene, const HeadlessGl& gl)
 }
 
 SceneView::~SceneView() {
+  const std::unique_lock alone(functions_of_opengl);
   parts_->gl.MakeCurrent();
   mjr_freeContext(&parts_->context);
   mjv_freeScene(&parts_->drawn);
@@ -78,6 +86,7 @@ SceneImage SceneView::Draw(const Rigid3& T_w_c, const PinholeView& view,
   mjvScene* drawn = &parts_->drawn;
   mjv_updateScene(model, data, &option, nullptr, &camera, mjCAT_ALL, drawn);
   for (mjvGLCamera& eye : drawn->camera) SetCamera(T_w_c, view, &eye);
+  const std::shared_lock with_others(functions_of_opengl);
   parts_->gl.MakeCurrent();
   drawn->flags[mjRND_SHADOW] = options.has_shadows ? 1 : 0;
   drawn->flags[mjRND_REFLECTION] = 0;

@@ -31,7 +31,7 @@ struct SceneViewOptions {
   bool has_shadows = false;
 };
 
-/// Draws the scene of the arm.
+/// Draws the scene of the arm. Several may draw at once, on threads of their own.
 class SceneView {
  public:
   /// @param gl  Lives longer than the view.

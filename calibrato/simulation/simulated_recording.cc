@@ -62,23 +62,6 @@ std::string TruthPoses(const Rig& rig, const CarrierPath& path, Time start) {
   return text;
 }
 
-// The motion as planned, with when its loops begin and, on the arm, its joints.
-std::string TimedMotionYaml(const TimedMotion& timed) {
-  Value motion = ToValue(timed.motion);
-  motion.Set("scale", timed.scale).Set("loop_duration_s", Value::Numbers(timed.loop_duration_s));
-  if (!timed.joint_path.empty()) {
-    Value path = Value::Array();
-    for (const JointSample& sample : timed.joint_path) {
-      Value joints = Value::Array();
-      joints.Append(sample.t_s);
-      for (const double angle : sample.position) joints.Append(angle);
-      path.Append(std::move(joints));
-    }
-    motion.Set("joint_path_t_s_q_rad", std::move(path));
-  }
-  return ToYaml(motion);
-}
-
 }  // namespace
 
 std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
@@ -90,7 +73,7 @@ std::map<std::string, std::string> SimulatedRecordingFiles(const Rig& rig,
       {"sensor.yaml", SensorYaml(rig)},
       {"target.yaml", ToYaml(ToValue(rig.board))},
       {"rig.yaml", ToYaml(ToValue(rig))},
-      {"motion.yaml", TimedMotionYaml(motion)},
+      {"motion.yaml", ToYaml(ToValue(motion))},
       {"truth.yaml", TruthYaml(rig, run.imu)},
       {"truth_poses.csv", TruthPoses(rig, run.path, start)}};
   if (run.images.empty()) {

@@ -51,6 +51,7 @@ SimulatedRun SimulateRun(
     const int num_dropped =
         SimulateImages(rig, run.path, start, rng.Stream("simulate images"), keep);
     run.frames.num_frames = static_cast<int>(run.images.size()) + num_dropped;
+    run.frames.num_dropped = num_dropped;
   } else {
     Rng noise = rng.Stream("simulate");
     run.frames = SimulateFrames(rig, run.path, start, noise);

@@ -40,6 +40,8 @@ struct SimulatedRun {
 ///
 /// Corners, images, IMU samples and arm draw from streams of their own, so that one does not depend
 /// on the others: those of `rng` for "simulate", "simulate images", "simulate imu", "simulate arm".
+/// Runs may go on side by side on threads of their own, at every fidelity; which ones do changes no
+/// byte.
 /// @param start  The camera's clock when the motion begins.
 /// @param on_image  Called with each image of fidelity `rendered` when it is taken; may be empty.
 /// @throws InputError: no dynamics without an arm; an arm that does not follow; nothing to render

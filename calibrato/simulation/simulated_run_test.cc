@@ -6,7 +6,9 @@
 #include <variant>
 
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
 #include "calibrato/motion/paper_scene.h"
+#include "calibrato/sensors/effects.h"
 
 namespace calibrato {
 namespace {
@@ -52,6 +54,42 @@ TEST(SimulateRun, ThePhysicalArmComesCloseToItsPlanButNotExactly) {
   EXPECT_LT(run.tracking->max_torque_share, 1.0);
   EXPECT_GT(run.tracking->max_torque_share, 0.1);
   EXPECT_FALSE(SimulateRun(PaperRig(), motion, Fidelity::kFast, kStart, Rng(3)).tracking);
+}
+
+// Everything that a run draws and moves, at once on two threads and one after the other.
+TEST(SimulateRun, TheNumberOfThreadsChangesNoByte) {
+  Rig rig = PaperRig();
+  rig.camera_rate_hz = 0.4;
+  Motion one_loop = HandcraftedMotion(Task::kExtrinsic);
+  one_loop.carrier = Carrier::kArm;
+  one_loop.loops.resize(1);
+  SwitchOnEffects("all", &rig);
+  const TimedMotion motion = std::get<TimedMotion>(PlanMotion(one_loop, rig));
+  for (const Fidelity fidelity : {Fidelity::kPhysical, Fidelity::kRendered}) {
+    const auto run_all = [&](int num_threads) {
+      SetNumThreads(num_threads);
+      return ParallelMap<SimulatedRun>(
+          2, [&](size_t i) { return SimulateRun(rig, motion, fidelity, kStart, Rng(i)); });
+    };
+    const std::vector<SimulatedRun> one = run_all(1);
+    const std::vector<SimulatedRun> two = run_all(2);
+    SetNumThreads(0);
+    for (size_t i = 0; i < one.size(); ++i) {
+      ASSERT_EQ(one[i].images.size(), two[i].images.size());
+      for (size_t k = 0; k < one[i].images.size(); ++k) {
+        EXPECT_EQ(one[i].images[k].stamp, two[i].images[k].stamp);
+        EXPECT_TRUE(one[i].images[k].png == two[i].images[k].png) << i << " " << k;
+      }
+      ASSERT_EQ(one[i].frames.views.size(), two[i].frames.views.size());
+      for (size_t k = 0; k < one[i].frames.views.size(); ++k) {
+        EXPECT_EQ(one[i].frames.views[k].pixels, two[i].frames.views[k].pixels);
+      }
+      ASSERT_EQ(one[i].imu.stream.gyro.size(), two[i].imu.stream.gyro.size());
+      EXPECT_EQ(one[i].imu.stream.gyro.back().value, two[i].imu.stream.gyro.back().value);
+      EXPECT_EQ(one[i].imu.stream.accel.back().value, two[i].imu.stream.accel.back().value);
+    }
+    EXPECT_NE(two[0].imu.stream.gyro.back().value, two[1].imu.stream.gyro.back().value);
+  }
 }
 
 TEST(SimulateRun, RefusesDynamicsWithoutAnArm) {
