@@ -24,7 +24,7 @@ void CheckFidelity(const ContestSetting& setting) {
 }
 
 // Before boards that stand elsewhere the motion is planned anew.
-Trial TrialOf(const ContestSetting& setting, const Rig& rig, const PlannedMotion& motion,
+Trial TrialOf(const ContestSetting& setting, const Rig& rig, const ExecutableMotion& motion,
               const Rng& noise) {
   if (setting.fixed_rig || IsPapersScene(setting.rigs)) {
     return RunTrial(setting.task, rig, motion, setting.fidelity, noise);

@@ -10,8 +10,8 @@
 namespace calibrato {
 namespace {
 
-PlannedMotion Planned(TimedMotion timed) {
-  PlannedMotion planned;
+ExecutableMotion Planned(TimedMotion timed) {
+  ExecutableMotion planned;
   planned.path = PlannedPath(timed);
   planned.path_length_m = PathLength(timed.motion);
   planned.path_length_original_m = PathLengthOriginal(timed.motion);
@@ -22,38 +22,38 @@ PlannedMotion Planned(TimedMotion timed) {
 
 }  // namespace
 
-PlannedMotion Plan(Motion motion, Carrier carrier, const Rig& scene) {
+ExecutableMotion Plan(Motion motion, Carrier carrier, const Rig& scene) {
   motion.carrier = carrier;
   return Planned(PlanScaledToFit(motion, scene));
 }
 
-PlannedMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene) {
-  PlannedMotion planned;
+ExecutableMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene) {
+  ExecutableMotion planned;
   planned.path = PathAlong(trajectory, scene);
   planned.path_length_m = PathLength(planned.path);
   planned.path_length_original_m = std::numeric_limits<double>::quiet_NaN();
   return planned;
 }
 
-PlannedMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
+ExecutableMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
   if (const auto* looped = std::get_if<Motion>(&motion.way)) return Plan(*looped, carrier, scene);
   return Plan(std::get<RecordedTrajectory>(motion.way), scene);
 }
 
-PlannedMotion BeforeBoard(const PlannedMotion& motion, const Rig& rig) {
+ExecutableMotion BeforeBoard(const ExecutableMotion& motion, const Rig& rig) {
   return motion.timed ? Planned(BeforeBoard(*motion.timed, rig)) : motion;
 }
 
 double Contestant::mean_path_length_m() const {
   double sum = 0.0;
-  for (const PlannedMotion& motion : motions) sum += motion.path_length_m;
+  for (const ExecutableMotion& motion : motions) sum += motion.path_length_m;
   return sum / static_cast<double>(motions.size());
 }
 
 Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& rigs,
                             const Rng& rng) {
   Contestant random{"random", {}, true};
-  random.motions = ParallelMap<PlannedMotion>(rigs.size(), [&](size_t i) {
+  random.motions = ParallelMap<ExecutableMotion>(rigs.size(), [&](size_t i) {
     Rng draws = rng.Stream("evaluation motion", i);
     Motion motion = RandomMotion(task, draws);
     motion.base_pose = BasePoseBeforeBoard(rigs[i]);
@@ -89,8 +89,8 @@ Contestant AtPathLength(const Contestant& contestant, const std::string& policy,
                         const std::function<const Rig&(size_t motion)>& scene) {
   Contestant scaled = contestant;
   scaled.policy = policy;
-  scaled.motions = ParallelMap<PlannedMotion>(contestant.motions.size(), [&](size_t i) {
-    const PlannedMotion& planned = contestant.motions[i];
+  scaled.motions = ParallelMap<ExecutableMotion>(contestant.motions.size(), [&](size_t i) {
+    const ExecutableMotion& planned = contestant.motions[i];
     if (!planned.timed || !(planned.path_length_m > 0.0)) return planned;
     Motion motion = planned.timed->motion;
     for (Loop& loop : motion.loops) loop.coefficients *= path_length_m / planned.path_length_m;

@@ -23,7 +23,7 @@ struct MotionUnderTrial {
 };
 
 /// A motion, ready to be executed.
-struct PlannedMotion {
+struct ExecutableMotion {
   CarrierPath path;
   std::optional<TimedMotion> timed;  ///< Of looped motions; not of recorded trajectories.
   double path_length_m = 0.0;
@@ -33,24 +33,25 @@ struct PlannedMotion {
 
 /// Plans it on the carrier; what does not fit is shrunk by the largest factor that fits.
 /// @throws InputError if it can't be made at any scale.
-[[nodiscard]] PlannedMotion Plan(Motion motion, Carrier carrier, const Rig& scene);
-[[nodiscard]] PlannedMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene);
-[[nodiscard]] PlannedMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene);
+[[nodiscard]] ExecutableMotion Plan(Motion motion, Carrier carrier, const Rig& scene);
+[[nodiscard]] ExecutableMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene);
+[[nodiscard]] ExecutableMotion Plan(const MotionUnderTrial& motion, Carrier carrier,
+                                    const Rig& scene);
 
 /// The same before the board of a rig that stands elsewhere than where it was planned. Recorded
 /// trajectories stay: they are relative to the board already.
 /// @throws InputError if it can't be made there at any scale.
-[[nodiscard]] PlannedMotion BeforeBoard(const PlannedMotion& motion, const Rig& rig);
+[[nodiscard]] ExecutableMotion BeforeBoard(const ExecutableMotion& motion, const Rig& rig);
 
 /// One method under trial.
 struct Contestant {
   std::string policy;
   /// The members, each tried on every rig; or, with is_drawn_afresh, a motion for each rig.
-  std::vector<PlannedMotion> motions;
+  std::vector<ExecutableMotion> motions;
   bool is_drawn_afresh = false;
 
   [[nodiscard]] size_t num_members() const { return is_drawn_afresh ? 1 : motions.size(); }
-  [[nodiscard]] const PlannedMotion& MotionFor(size_t member, size_t rig) const {
+  [[nodiscard]] const ExecutableMotion& MotionFor(size_t member, size_t rig) const {
     return motions[is_drawn_afresh ? rig : member];
   }
   [[nodiscard]] double mean_path_length_m() const;

@@ -23,7 +23,8 @@ struct Recorded {
   SimulatedImu imu;
 };
 
-Recorded Record(const Rig& rig, const PlannedMotion& motion, Fidelity fidelity, const Rng& noise) {
+Recorded Record(const Rig& rig, const ExecutableMotion& motion, Fidelity fidelity,
+                const Rng& noise) {
   if (motion.timed) {
     SimulatedRun run = SimulateRun(rig, *motion.timed, fidelity, kStart, noise);
     return {std::move(run.frames.views), std::move(run.imu)};

@@ -13,7 +13,7 @@ namespace calibrato {
 namespace {
 
 FilterProblem Recorded(const Rig& rig, uint64_t seed) {
-  const PlannedMotion motion = Plan(HandcraftedMotion(Task::kExtrinsic), Carrier::kFree, rig);
+  const ExecutableMotion motion = Plan(HandcraftedMotion(Task::kExtrinsic), Carrier::kFree, rig);
   TrialRecording recording =
       RecordForTrial(Task::kExtrinsic, rig, motion, Fidelity::kFast, Rng(seed));
   return {rig.cameras.front().model,  recording.views,      recording.imu, rig.imu_noise,

@@ -21,7 +21,7 @@ using SceneOf = std::function<const Rig&(size_t motion)>;
 Contestant Changed(const Contestant& whole, Carrier carrier, const SceneOf& scene,
                    const std::function<void(Motion*)>& change) {
   Contestant changed = whole;
-  changed.motions = ParallelMap<PlannedMotion>(whole.motions.size(), [&](size_t i) {
+  changed.motions = ParallelMap<ExecutableMotion>(whole.motions.size(), [&](size_t i) {
     Motion motion = whole.motions[i].timed->motion;
     change(&motion);
     return Plan(std::move(motion), carrier, scene(i));
@@ -31,7 +31,7 @@ Contestant Changed(const Contestant& whole, Carrier carrier, const SceneOf& scen
 
 bool IsLooped(const Contestant& contestant) {
   return std::all_of(contestant.motions.begin(), contestant.motions.end(),
-                     [](const PlannedMotion& motion) { return motion.timed.has_value(); });
+                     [](const ExecutableMotion& motion) { return motion.timed.has_value(); });
 }
 
 // After which loops to cut, without the last one.
@@ -60,7 +60,7 @@ void AddMethod(const Contestant& whole, Carrier carrier, const SceneOf& scene, P
         }));
   }
   size_t num_loops = 1000;
-  for (const PlannedMotion& motion : whole.motions) {
+  for (const ExecutableMotion& motion : whole.motions) {
     num_loops = std::min(num_loops, motion.timed->motion.loops.size());
   }
   for (const int cut : Cuts(static_cast<int>(num_loops))) {

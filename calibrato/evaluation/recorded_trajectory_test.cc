@@ -79,7 +79,7 @@ TEST(RecordedTrajectory, ItsVelocitiesAndAccelerationsAreItsPathsDerivatives) {
 }
 
 TEST(RecordedTrajectory, IsJudgedLikeAnyMotion) {
-  const PlannedMotion motion =
+  const ExecutableMotion motion =
       Plan(ParseTumTrajectory(TumText(8.0, Swaying), "hand.txt"), PaperRig());
   EXPECT_GT(motion.path_length_m, 5.0);
   EXPECT_TRUE(std::isnan(motion.path_length_original_m));

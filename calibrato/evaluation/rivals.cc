@@ -41,7 +41,7 @@ struct Outcome {
 /// All that an estimator may look at, and the truth to judge it by.
 struct Case {
   const Rig* rig;
-  const PlannedMotion* motion;
+  const ExecutableMotion* motion;
   const TrialRecording* recording;
   Fidelity fidelity;
   Rng noise;
@@ -228,7 +228,7 @@ Rivals EvaluateRivals(const ContestSetting& setting, const std::vector<MotionUnd
     const Rng noise = rng.Stream("evaluation noise", i);
     std::vector<Outcome> outcomes;
     for (const Contestant& contestant : contestants) {
-      const PlannedMotion& motion = contestant.MotionFor(0, i);
+      const ExecutableMotion& motion = contestant.MotionFor(0, i);
       TrialRecording recording =
           RecordForTrial(setting.task, rigs[i], motion, setting.fidelity, noise);
       if (setting.task == Task::kIntrinsic)

@@ -35,8 +35,9 @@ std::vector<Contestant> Contestants(const Table1Options& options, const std::vec
   for (const Contestant& brought :
        BroughtContestants(options.motions, setting.task, carrier, scene)) {
     contestants.push_back(brought);
-    const bool is_looped = std::all_of(brought.motions.begin(), brought.motions.end(),
-                                       [](const PlannedMotion& m) { return m.timed.has_value(); });
+    const bool is_looped =
+        std::all_of(brought.motions.begin(), brought.motions.end(),
+                    [](const ExecutableMotion& m) { return m.timed.has_value(); });
     if (!is_looped || !IsLonger(brought.mean_path_length_m(), random_path)) continue;
     contestants.push_back(
         AtPathLength(brought, AtPathOf(brought.policy, "random"), random_path, carrier, in_scene));
@@ -50,7 +51,7 @@ std::vector<Contestant> Contestants(const Table1Options& options, const std::vec
   return contestants;
 }
 
-std::vector<BoardView> ViewsOf(Task task, const PlannedMotion& motion, const Rig& scene,
+std::vector<BoardView> ViewsOf(Task task, const ExecutableMotion& motion, const Rig& scene,
                                const Rng& noise) {
   std::vector<BoardView> views =
       RecordForTrial(Task::kIntrinsic, scene, motion, Fidelity::kFast, noise).views;
@@ -137,7 +138,7 @@ Table1 EvaluateTable1(const Table1Options& options) {
     Table1Row& row = table.rows[k];
     row.policy = contestants[k].policy;
     row.trials = std::move(trials[k]);
-    for (const PlannedMotion& motion : contestants[k].motions) {
+    for (const ExecutableMotion& motion : contestants[k].motions) {
       row.scale = std::min(row.scale, motion.scale);
     }
     row.example = contestants[k].motions.front();

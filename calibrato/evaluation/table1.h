@@ -39,7 +39,7 @@ struct Table1Row {
   Comparison to_best_simple_rival;
   ConsistencyTest consistency;  ///< Of NeesDimension(task).
   double scale = 1.0;           ///< Least factor by which a motion was shrunk to fit the carrier.
-  PlannedMotion example;        ///< As it ran; for `random`, the first rig's.
+  ExecutableMotion example;     ///< As it ran; for `random`, the first rig's.
   std::vector<BoardView> example_views;  ///< What it showed to the camera of the scene.
 
   [[nodiscard]] size_t num_members() const { return trials.size(); }

@@ -67,7 +67,7 @@ Value RowValue(const Table1& table, size_t k) {
 }
 
 // Where the motion's loops begin and end [s]; a recorded trajectory is one.
-std::vector<double> LoopEnds(const PlannedMotion& motion) {
+std::vector<double> LoopEnds(const ExecutableMotion& motion) {
   if (!motion.timed) return {0.0, motion.path.duration_s};
   std::vector<double> ends = {0.0};
   for (const double duration_s : motion.timed->loop_duration_s) {

@@ -149,7 +149,7 @@ Trial ExtrinsicTrial(const Rig& rig, const TrialRecording& recording) {
 
 }  // namespace
 
-TrialRecording RecordForTrial(Task task, const Rig& rig, const PlannedMotion& motion,
+TrialRecording RecordForTrial(Task task, const Rig& rig, const ExecutableMotion& motion,
                               Fidelity fidelity, const Rng& noise) {
   if (task == Task::kIntrinsic && fidelity == Fidelity::kFast) {
     Rng frame_noise = noise.Stream("simulate");
@@ -166,7 +166,7 @@ Trial CalibrateRecording(Task task, const Rig& rig, const TrialRecording& record
   return task == Task::kIntrinsic ? IntrinsicTrial(rig, recording) : ExtrinsicTrial(rig, recording);
 }
 
-Trial RunTrial(Task task, const Rig& rig, const PlannedMotion& motion, Fidelity fidelity,
+Trial RunTrial(Task task, const Rig& rig, const ExecutableMotion& motion, Fidelity fidelity,
                const Rng& noise) {
   Trial trial;
   try {

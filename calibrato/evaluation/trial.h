@@ -22,8 +22,9 @@ struct TrialRecording {
 
 /// Simulates the motion and, at fidelity `rendered`, searches the images for the board.
 /// @throws InputError as SimulateRun does.
-[[nodiscard]] TrialRecording RecordForTrial(Task task, const Rig& rig, const PlannedMotion& motion,
-                                            Fidelity fidelity, const Rng& noise);
+[[nodiscard]] TrialRecording RecordForTrial(Task task, const Rig& rig,
+                                            const ExecutableMotion& motion, Fidelity fidelity,
+                                            const Rng& noise);
 
 /// One rig calibrated by one motion. A figure that there is not is NaN: those of the other task,
 /// all of a failed trial.
@@ -64,7 +65,7 @@ struct Trial {
 /// the extrinsic task the camera's intrinsics, as in the paper).
 /// @throws InputError if the simulation can't be made for want of a library (fidelity `rendered`);
 /// what this one motion does not allow is a failure of the trial.
-[[nodiscard]] Trial RunTrial(Task task, const Rig& rig, const PlannedMotion& motion,
+[[nodiscard]] Trial RunTrial(Task task, const Rig& rig, const ExecutableMotion& motion,
                              Fidelity fidelity, const Rng& noise);
 
 /// The same from a recording at hand.
