@@ -5,14 +5,6 @@
 #include "calibrato/mdp/design_setting.h"
 
 namespace calibrato {
-namespace {
-
-// Half of what expected information uses by default: enough for the fourth harmonic, in half the
-// time.
-constexpr int kFramesPerLoop = 24;
-
-}  // namespace
-
 void AddDesignArguments(CLI::App& app, DesignArguments* arguments) {
   app.add_option("--believed", arguments->num_believed,
                  "Rigs that a design must suit, drawn beside the nominal one")
@@ -32,7 +24,6 @@ MotionDesignProblem MakeDesignProblem(Task task, Carrier carrier, std::vector<Ri
   problem.task = task;
   problem.rigs = std::move(rigs);
   problem.num_loops = NumLoops(task);
-  problem.frames_per_loop = kFramesPerLoop;
   Motion handcrafted = HandcraftedMotion(task);
   handcrafted.carrier = carrier;
   handcrafted.base_pose = problem.base_pose;

@@ -25,6 +25,7 @@ constexpr GaussianProcessOptions kExpectation{
 constexpr double kLengthScale = 0.7;
 constexpr double kErrorStddev = 0.3;
 constexpr int kNumCandidates = 512;
+constexpr int kFramesOfStarts = 24;
 
 // Standard deviation of half the logarithm of the pooled NEES, whose relative one is sqrt(2 / dof).
 double NoiseOf(const DesignRound& round) {
@@ -169,6 +170,9 @@ class DesignLearner {
   Motion FirstDesign() {
     MotionDesignProblem nominal = options_.problem;
     nominal.rigs.resize(1);
+    // Enough for the fourth harmonic, in half the time. The final design needs more: with few
+    // frames the board leaves the image between them.
+    nominal.frames_per_loop = std::min(nominal.frames_per_loop, kFramesOfStarts);
     std::optional<MotionDesign> design =
         DesignFromManyStarts(nominal, options_.starts, rng_.Stream("starts"));
     if (!design) {
