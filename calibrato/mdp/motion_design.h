@@ -31,10 +31,6 @@ struct MotionDesign {
 /// of their excess; the minimiser is L-BFGS (Liu and Nocedal 1989; NLopt's), and FitToBudget takes
 /// out what excess is left. A local optimum, which depends on the start; deterministic.
 ///
-/// (The method of moving asymptotes, with the limits as constraints, needs three to five times as
-/// many evaluations for the same loss here; sequential quadratic programming stops at once, at the
-/// edges of the limits.)
-///
 /// @param start  Need not fit within limits, path or time.
 /// @return nothing if the start teaches nothing about any of the rigs, or fits at no scale.
 [[nodiscard]] std::optional<MotionDesign> DesignMotion(const MotionDesignProblem& problem,
