@@ -601,6 +601,53 @@ TEST(Learn, NamesWhatItsOptionsMayBe) {
       {"wrong-truth", "no joint task"});
 }
 
+TEST(Learn, PresetBestRefusesOptionsOfThePaper) {
+  const ScratchFolder scratch;
+  for (const auto& [option, value] :
+       std::vector<std::pair<std::string, std::string>>{{"--planner", "cem"},
+                                                        {"--round", "2"},
+                                                        {"--mistakes", "all"},
+                                                        {"--reward", "reprojection"}}) {
+    ExpectRefused(scratch, {"learn", "intrinsic", option, value},
+                  {"preset best has no " + option, "--preset paper"});
+  }
+}
+
+TEST(Plan, RefusesWhatItCannotPlan) {
+  const SimulationInput input;
+  const Arguments plan = {"plan", "--rig", input.rig};
+  ExpectRefused(input.scratch, plan, {"--method", "--policy"});
+  ExpectRefused(input.scratch, With(plan, {"--method", "guess"}), {"guess"});
+  ExpectRefused(input.scratch, With(plan, {"--method", "sac"}), {"sac", "--policy"});
+  ExpectRefused(input.scratch, With(plan, {"--policy", input.scratch.MakeFolder("empty")}),
+                {"no policy", "empty"});
+  ExpectRefused(input.scratch, With(plan, {"--method", "fisher", "--max-path", "-1"}),
+                {"--max-path"});
+}
+
+TEST(Plan, WritesAMotionThatFits) {
+  const SimulationInput input;
+  const std::string motion = input.scratch.Path("planned.yaml");
+  const Arguments plan = {"plan",   "--rig",     input.rig,       "--method", "random-shooting",
+                          "--task", "extrinsic", "--evaluations", "30",       "--out",
+                          motion};
+  const Ended ended = RunProgram(With(plan, {"--json"}));
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  const Value result = ParseJson(ended.out, "stdout");
+  EXPECT_EQ(result.At("kind").AsString(), "plan");
+  EXPECT_EQ(result.At("information_evaluations").AsInt(), 30);
+  // At most the handcrafted motion's path.
+  EXPECT_LE(result.At("path_length_m").AsDouble(), 3.3790);
+  EXPECT_GT(result.At("expected").At("rotation_sigma_rad").AsPositive(), 0.0);
+  // Simulated as it is, without scaling.
+  EXPECT_EQ(RunProgram({"simulate", "--rig", input.rig, "--motion", motion, "--out",
+                        input.scratch.Path("of_plan")})
+                .exit_code,
+            0);
+  // Not written over.
+  EXPECT_EQ(RunProgram(plan).exit_code, 2);
+}
+
 TEST(Learn, NamesRigsThatAreNotThere) {
   const ScratchFolder scratch;
   ExpectRefused(scratch, {"learn", "intrinsic", "--rigs", "nowhere.yaml"}, {"nowhere.yaml"});

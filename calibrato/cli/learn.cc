@@ -113,7 +113,26 @@ ExitCode Tell(const LearnResult& learned, const Value& result, const Rig& scene,
   return kNotTrusted;
 }
 
+// What was asked for that only the preset `paper` has; empty if nothing.
+std::string OptionOfPaper(const Options& options) {
+  const Options standard;
+  if (options.planner != standard.planner) return "--planner";
+  if (options.evaluations != standard.evaluations) return "--evaluations";
+  if (options.round != standard.round) return "--round";
+  if (options.live_port != standard.live_port) return "--live";
+  if (options.setting.criterion != standard.setting.criterion) return "--criterion";
+  if (options.setting.information_weight >= 0.0) return "--information-weight";
+  if (options.setting.reward != standard.setting.reward) return "--reward";
+  if (!options.setting.mistakes.empty()) return "--mistakes";
+  return "";
+}
+
 ExitCode RunLearnBest(const Options& options, const GlobalOptions& global) {
+  const std::string other = OptionOfPaper(options);
+  if (!other.empty()) {
+    throw InputError({"preset best has no " + other, "", "that is an option of the paper's learner",
+                      "add --preset paper, or leave out " + other});
+  }
   Stopwatch stopwatch;
   OutputFolder out(options.out);
   LearnBestArguments arguments;

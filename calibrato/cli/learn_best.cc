@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "calibrato/base/input_error.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/learning/design_learner.h"
@@ -14,19 +13,10 @@ namespace {
 
 constexpr int kNumEpisodes = 96;
 
-void RefuseWhatThePaperAlone(const LearnSetting& setting) {
-  if (!setting.mistakes.empty() || setting.reward != "error") {
-    throw InputError({"preset best has neither mistakes nor rewards to choose", "",
-                      "it learns where expected information fails",
-                      "use --preset paper, or leave out --mistakes and --reward"});
-  }
-}
-
 }  // namespace
 
 LearnResult LearnBest(const LearnBestArguments& arguments) {
   const LearnSetting& setting = arguments.setting;
-  RefuseWhatThePaperAlone(setting);
   const Rng rng(arguments.seed);
   const Fidelity fidelity = FidelityFromName(setting.fidelity);
   std::vector<Rig> believed;
