@@ -55,6 +55,17 @@ MotionUnderTrial ReadPolicyMotion(const std::string& words) {
 
 std::string NameOf(const std::string& path) { return fs::path(path).stem().string(); }
 
+// A file's row: only policies share a name, where they are what different training seeds gave.
+std::string NewName(const std::string& path, const std::vector<MotionUnderTrial>& motions) {
+  const std::string name = NameOf(path);
+  const bool is_built_in = name == "random" || name == "handcrafted" || name == "expert";
+  const bool is_taken = std::any_of(motions.begin(), motions.end(),
+                                    [&](const auto& other) { return other.policy == name; });
+  if (!is_built_in && !is_taken) return name;
+  throw InputError({"two motions named '" + name + "'", path, "a row is called after its file",
+                    "give a copy of it another name"});
+}
+
 }  // namespace
 
 void AddEvaluateOptions(CLI::App& app, EvaluateOptions* options) {
@@ -119,10 +130,10 @@ std::vector<MotionUnderTrial> ReadMotionsUnderTrial(const EvaluateOptions& optio
   std::vector<MotionUnderTrial> motions;
   for (const std::string& words : options.policies) motions.push_back(ReadPolicyMotion(words));
   for (const std::string& path : options.motions) {
-    motions.push_back({NameOf(path), ReadMotion(path), {}});
+    motions.push_back({NewName(path, motions), ReadMotion(path), {}});
   }
   for (const std::string& path : options.trajectories) {
-    motions.push_back({NameOf(path), ParseTumTrajectory(ReadFile(path), path), {}});
+    motions.push_back({NewName(path, motions), ParseTumTrajectory(ReadFile(path), path), {}});
   }
   return motions;
 }

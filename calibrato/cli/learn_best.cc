@@ -1,8 +1,10 @@
 #include "calibrato/cli/learn_best.h"
 
 #include <filesystem>
+#include <optional>
 #include <utility>
 
+#include "calibrato/base/input_error.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/learning/design_learner.h"
@@ -48,12 +50,22 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
   }
   options.seed = arguments.seed;
   options.resume = arguments.resume;
-  options.environment = "rigs " + setting.rigs + ", fidelity " + setting.fidelity;
+  options.environment = MakeEnvironment(setting).name;
   const MotionDesignProblem& problem = options.problem;
   const Judge judge = [&](const TimedMotion& motion, uint64_t index) {
     const Rig rig = rig_of_episode(index);
-    return JudgeMotion(problem.task, rig, is_before_board ? motion : BeforeBoard(motion, rig),
-                       fidelity, problem.criterion, rng.Stream("episode noise", index));
+    const Rng noise = rng.Stream("episode noise", index);
+    if (is_before_board) {
+      return JudgeMotion(problem.task, rig, motion, fidelity, problem.criterion, noise);
+    }
+    std::optional<TimedMotion> moved;
+    try {
+      moved = BeforeBoard(motion, rig);
+    } catch (const InputError&) {
+      // Before this board the carrier can't even stand: nobody learns anything of that rig.
+      return JudgeNothingLearned(problem.task, rig, problem.criterion);
+    }
+    return JudgeMotion(problem.task, rig, *moved, fidelity, problem.criterion, noise);
   };
   NoteInterruptions();
   return LearnByDesign(options, judge, arguments.out, &InterruptRequested());

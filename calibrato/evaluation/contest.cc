@@ -34,6 +34,9 @@ Trial TrialOf(const ContestSetting& setting, const Rig& rig, const ExecutableMot
   } catch (const InputError& error) {
     Trial failed;
     failed.failure = error.what();
+    failed.path_length_m = motion.path_length_m;
+    failed.path_length_original_m = motion.path_length_original_m;
+    failed.motion_s = motion.path.duration_s;
     return failed;
   }
 }

@@ -101,7 +101,7 @@ ForeignCamera CalibrateByMrcal(const std::vector<BoardView>& views, Resolution r
   for (const BoardView& view : views) {
     if (view.num_corners() == board.rows * board.columns) whole.push_back(view);
   }
-  const ScratchFolder folder;
+  const ProgramFolder folder;
   WriteFileAtomically(folder.PathOf("corners.vnl"), CornersFile(whole, board));
   const ProgramEnd end = RunOutsideProgram(
       {"mrcal-calibrate-cameras", "--corners-cache", "corners.vnl", "--lensmodel",

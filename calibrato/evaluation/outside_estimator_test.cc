@@ -16,7 +16,7 @@ OutsideEstimator Shell(const std::string& script, double timeout_s = 20.0) {
 }
 
 OutsideResult Try(const OutsideEstimator& estimator) {
-  const ScratchFolder folder;
+  const ProgramFolder folder;
   return RunOutsideEstimator(estimator, {"/a.bag", "/t.yaml", "/c.yaml", "/i.yaml"}, folder.path());
 }
 
@@ -43,7 +43,7 @@ TEST(OutsideEstimator, SaysHowItCameToNothing) {
 }
 
 TEST(OutsideEstimator, WhatHangsIsKilledWithItsChildren) {
-  const ScratchFolder folder;
+  const ProgramFolder folder;
   const OutsideResult made = RunOutsideEstimator(
       Shell("(sleep 1; touch " + folder.PathOf("alive") + ") & sleep 100", 0.2), {}, folder.path());
   EXPECT_EQ(made.failure, "no end after 0.2 s");

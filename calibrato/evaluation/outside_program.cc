@@ -89,7 +89,7 @@ ProgramEnd RunOutsideProgram(const std::vector<std::string>& words, const std::s
   return end;
 }
 
-ScratchFolder::ScratchFolder() {
+ProgramFolder::ProgramFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "calibrato-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) {
     throw InputError(
@@ -98,7 +98,7 @@ ScratchFolder::ScratchFolder() {
   path_ = name;
 }
 
-ScratchFolder::~ScratchFolder() {
+ProgramFolder::~ProgramFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
 }

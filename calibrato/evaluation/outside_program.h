@@ -19,13 +19,13 @@ struct ProgramEnd {
                                            const std::string& folder, double limit_s);
 
 /// A folder of its own for one run, gone with it.
-class ScratchFolder {
+class ProgramFolder {
  public:
   /// @throws InputError if none can be made in the folder for temporary files.
-  ScratchFolder();
-  ~ScratchFolder();
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ProgramFolder();
+  ~ProgramFolder();
+  ProgramFolder(const ProgramFolder&) = delete;
+  ProgramFolder& operator=(const ProgramFolder&) = delete;
 
   [[nodiscard]] std::string path() const { return path_.string(); }
   [[nodiscard]] std::string PathOf(const std::string& name) const {

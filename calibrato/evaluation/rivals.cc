@@ -146,7 +146,7 @@ Outcome ByOutside(const OutsideEstimator& estimator, const Case& tried) {
     return FailedOutcome(tried, "recorded trajectories are not written as bags", 0.0);
   }
   const Rig& rig = *tried.rig;
-  const ScratchFolder folder;
+  const ProgramFolder folder;
   const SimulatedRun run =
       SimulateRun(rig, *tried.motion->timed, tried.fidelity, kStart, tried.noise);
   OutputFolder recording(folder.PathOf("recording"));
@@ -168,7 +168,7 @@ Outcome ByOutside(const OutsideEstimator& estimator, const Case& tried) {
 }
 
 bool IsInstalled(const std::string& program) {
-  const ScratchFolder folder;
+  const ProgramFolder folder;
   constexpr double kLimit = 60.0;
   return RunOutsideProgram({program, "--help"}, folder.path(), kLimit).is_success;
 }

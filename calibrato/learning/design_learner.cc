@@ -114,12 +114,13 @@ class DesignLearner {
       : options_(options), judge_(judge), folder_(std::move(folder)), rng_(options.seed) {
     result_.task = options.problem.task;
     result_.preset = "best";
-    if (options.resume) {
-      progress_ = ReadDesignProgress(folder_, NameOfRun());
-    } else {
-      std::filesystem::create_directories(folder_);
-      Save();
-    }
+    if (!options.resume) return;
+    progress_ = ReadDesignProgress(folder_, NameOfRun());
+    if (NumEpisodes() <= options.num_episodes) return;
+    throw InputError({"cannot resume", folder_,
+                      "it has " + std::to_string(NumEpisodes()) + " episodes, " +
+                          std::to_string(options.num_episodes) + " were asked for",
+                      "ask for at least " + std::to_string(NumEpisodes())});
   }
 
   LearnResult Run(const std::atomic<bool>* interrupt) {
@@ -157,6 +158,8 @@ class DesignLearner {
         .Set("max_path_m", problem.max_path_m)
         .Set("max_duration_s", problem.max_duration_s)
         .Set("coefficient_limit", problem.coefficient_limit)
+        .Set("criterion", static_cast<int>(problem.criterion))
+        .Set("frames_per_loop", problem.frames_per_loop)
         .Set("starts", options_.starts.num_starts)
         .Set("evaluations_per_start", options_.starts.evaluations_per_start)
         .Set("evaluations_of_best", options_.starts.evaluations_of_best)
@@ -164,7 +167,10 @@ class DesignLearner {
         .Set("evaluations_of_round", options_.evaluations_of_round);
   }
 
-  void Save() const { WriteDesignProgress(folder_, NameOfRun(), progress_, options_.problem.task); }
+  void Save() const {
+    std::filesystem::create_directories(folder_);
+    WriteDesignProgress(folder_, NameOfRun(), progress_, options_.problem.task);
+  }
 
   // For the nominal rig from many starts, then for all rigs.
   Motion FirstDesign() {

@@ -43,7 +43,7 @@ struct DesignLearnOptions {
 /// Where the expectation is right, the first round wins, and learning adds nothing: then it says
 /// so.
 ///
-/// Writes into `folder`: training.jsonl, checkpoint.json (after the first design and each round)
+/// Writes into `folder`: training.jsonl, checkpoint.json (both after each round)
 /// and, when done, policy/motion.yaml and policy/policy.yaml. The same options give the same bytes,
 /// for any number of threads, whether or not the run was interrupted, killed and resumed.
 ///

@@ -154,6 +154,7 @@ void WriteDesignPolicy(const std::string& folder, const Value& run, const Motion
   out.Add("policy.yaml", ToYaml(Value::Object()
                                     .Set("format_version", kFormatVersion)
                                     .Set("preset", "best")
+                                    .Set("task", run.At("task"))
                                     .Set("run", run)));
   out.Add("motion.yaml", ToYaml(calibrato::ToValue(motion)));
   out.Commit();

@@ -97,6 +97,11 @@ void CheckOptions(const LearnOptions& options) {
     CheckRange("episodes of stage " + options.stages[i].name, options.stages[i].num_episodes, 1,
                options.num_episodes - 1);
   }
+  // The networks' units are those of the warm-up, which the memory must still hold.
+  if (options.stages.size() > 1) {
+    CheckRange("warm-up episodes", NumWarmUpEpisodes(options), 1,
+               options.stages.front().num_episodes - 1);
+  }
   const int num_before_last = FirstEpisode(options, options.stages.size() - 1);
   CheckRange("episodes", options.num_episodes, num_before_last + 1, kMany);
   CheckRange("round", options.round, 1, 1000);

@@ -20,6 +20,10 @@ struct MotionJudgement {
   double relative_error = 0.0;  ///< The paper's [-]; of the joint task, the sum of both.
 };
 
+/// Of a rig about which nothing was learned: the prior's.
+[[nodiscard]] MotionJudgement JudgeNothingLearned(Task task, const Rig& rig,
+                                                  DesignCriterion criterion);
+
 /// Executes the motion, records and calibrates. Where the data do not determine the calibration,
 /// loss and error are those of the prior.
 /// @throws InputError as RecordLoop.

@@ -9,9 +9,9 @@ ArmDisturbances ArmDisturbancesFromValue(const Value& value, std::vector<std::st
   ArmDisturbances arm;
   if (const Value* x = value.Find("mode_hz")) {
     arm.mode_hz = x->AsNonNegative();
-    if (!(arm.mode_hz <= 100.0)) {
-      x->Fail("bad frequency of the arm", "the simulation's steps of 1 ms follow up to 100 Hz",
-              "write 10 to 30");
+    if (!(arm.mode_hz <= 100.0) || (arm.mode_hz > 0.0 && arm.mode_hz < 1.0)) {
+      x->Fail("bad frequency of the arm",
+              "0 is none; the simulation's steps of 1 ms follow 1 to 100 Hz", "write 10 to 30");
     }
   }
   if (const Value* x = value.Find("mode_damping")) {

@@ -99,16 +99,16 @@ const std::vector<Effect>& Effects() {
 }
 
 void SwitchOnEffects(const std::string& names, Rig* rig) {
-  if (names == "all") {
-    for (const Effect& effect : Effects()) {
-      if (effect.is_everywhere) effect.switch_on(rig);
-    }
-    return;
-  }
   std::vector<std::string> known = {"all"};
   for (const Effect& effect : Effects()) known.emplace_back(effect.name);
   std::istringstream list(names);
   for (std::string name; std::getline(list, name, ',');) {
+    if (name == "all") {
+      for (const Effect& effect : Effects()) {
+        if (effect.is_everywhere) effect.switch_on(rig);
+      }
+      continue;
+    }
     const Effect* found = nullptr;
     for (const Effect& effect : Effects()) {
       if (effect.name == name) found = &effect;
