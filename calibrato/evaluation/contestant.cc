@@ -22,12 +22,12 @@ ExecutableMotion Planned(TimedMotion timed) {
 
 }  // namespace
 
-ExecutableMotion Plan(Motion motion, Carrier carrier, const Rig& scene) {
+ExecutableMotion MakeExecutable(Motion motion, Carrier carrier, const Rig& scene) {
   motion.carrier = carrier;
   return Planned(PlanScaledToFit(motion, scene));
 }
 
-ExecutableMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene) {
+ExecutableMotion MakeExecutable(const RecordedTrajectory& trajectory, const Rig& scene) {
   ExecutableMotion planned;
   planned.path = PathAlong(trajectory, scene);
   planned.path_length_m = PathLength(planned.path);
@@ -35,9 +35,10 @@ ExecutableMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene) {
   return planned;
 }
 
-ExecutableMotion Plan(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
-  if (const auto* looped = std::get_if<Motion>(&motion.way)) return Plan(*looped, carrier, scene);
-  return Plan(std::get<RecordedTrajectory>(motion.way), scene);
+ExecutableMotion MakeExecutable(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
+  if (const auto* looped = std::get_if<Motion>(&motion.way))
+    return MakeExecutable(*looped, carrier, scene);
+  return MakeExecutable(std::get<RecordedTrajectory>(motion.way), scene);
 }
 
 ExecutableMotion BeforeBoard(const ExecutableMotion& motion, const Rig& rig) {
@@ -57,14 +58,14 @@ Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& 
     Rng draws = rng.Stream("evaluation motion", i);
     Motion motion = RandomMotion(task, draws);
     motion.base_pose = BasePoseBeforeBoard(rigs[i]);
-    return Plan(std::move(motion), carrier, rigs[i]);
+    return MakeExecutable(std::move(motion), carrier, rigs[i]);
   });
   return random;
 }
 
 Contestant FixedContestant(const std::string& policy, const Motion& motion, Carrier carrier,
                            const Rig& scene) {
-  return {policy, {Plan(motion, carrier, scene)}, false};
+  return {policy, {MakeExecutable(motion, carrier, scene)}, false};
 }
 
 std::vector<Contestant> BroughtContestants(const std::vector<MotionUnderTrial>& motions, Task task,
@@ -79,7 +80,7 @@ std::vector<Contestant> BroughtContestants(const std::vector<MotionUnderTrial>& 
       contestants.push_back({motion.policy, {}, false});
       same = contestants.end() - 1;
     }
-    same->motions.push_back(Plan(motion, carrier, scene));
+    same->motions.push_back(MakeExecutable(motion, carrier, scene));
   }
   return contestants;
 }
@@ -94,7 +95,7 @@ Contestant AtPathLength(const Contestant& contestant, const std::string& policy,
     if (!planned.timed || !(planned.path_length_m > 0.0)) return planned;
     Motion motion = planned.timed->motion;
     for (Loop& loop : motion.loops) loop.coefficients *= path_length_m / planned.path_length_m;
-    return Plan(std::move(motion), carrier, scene(i));
+    return MakeExecutable(std::move(motion), carrier, scene(i));
   });
   return scaled;
 }

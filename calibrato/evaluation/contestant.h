@@ -33,10 +33,11 @@ struct ExecutableMotion {
 
 /// Plans it on the carrier; what does not fit is shrunk by the largest factor that fits.
 /// @throws InputError if it can't be made at any scale.
-[[nodiscard]] ExecutableMotion Plan(Motion motion, Carrier carrier, const Rig& scene);
-[[nodiscard]] ExecutableMotion Plan(const RecordedTrajectory& trajectory, const Rig& scene);
-[[nodiscard]] ExecutableMotion Plan(const MotionUnderTrial& motion, Carrier carrier,
-                                    const Rig& scene);
+[[nodiscard]] ExecutableMotion MakeExecutable(Motion motion, Carrier carrier, const Rig& scene);
+[[nodiscard]] ExecutableMotion MakeExecutable(const RecordedTrajectory& trajectory,
+                                              const Rig& scene);
+[[nodiscard]] ExecutableMotion MakeExecutable(const MotionUnderTrial& motion, Carrier carrier,
+                                              const Rig& scene);
 
 /// The same before the board of a rig that stands elsewhere than where it was planned. Recorded
 /// trajectories stay: they are relative to the board already.

@@ -13,7 +13,8 @@ namespace calibrato {
 namespace {
 
 FilterProblem Recorded(const Rig& rig, uint64_t seed) {
-  const ExecutableMotion motion = Plan(HandcraftedMotion(Task::kExtrinsic), Carrier::kFree, rig);
+  const ExecutableMotion motion =
+      MakeExecutable(HandcraftedMotion(Task::kExtrinsic), Carrier::kFree, rig);
   TrialRecording recording =
       RecordForTrial(Task::kExtrinsic, rig, motion, Fidelity::kFast, Rng(seed));
   return {rig.cameras.front().model,  recording.views,      recording.imu, rig.imu_noise,

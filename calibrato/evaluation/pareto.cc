@@ -24,7 +24,7 @@ Contestant Changed(const Contestant& whole, Carrier carrier, const SceneOf& scen
   changed.motions = ParallelMap<ExecutableMotion>(whole.motions.size(), [&](size_t i) {
     Motion motion = whole.motions[i].timed->motion;
     change(&motion);
-    return Plan(std::move(motion), carrier, scene(i));
+    return MakeExecutable(std::move(motion), carrier, scene(i));
   });
   return changed;
 }

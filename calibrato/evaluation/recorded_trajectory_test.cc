@@ -80,7 +80,7 @@ TEST(RecordedTrajectory, ItsVelocitiesAndAccelerationsAreItsPathsDerivatives) {
 
 TEST(RecordedTrajectory, IsJudgedLikeAnyMotion) {
   const ExecutableMotion motion =
-      Plan(ParseTumTrajectory(TumText(8.0, Swaying), "hand.txt"), PaperRig());
+      MakeExecutable(ParseTumTrajectory(TumText(8.0, Swaying), "hand.txt"), PaperRig());
   EXPECT_GT(motion.path_length_m, 5.0);
   EXPECT_TRUE(std::isnan(motion.path_length_original_m));
   for (const Task task : {Task::kIntrinsic, Task::kExtrinsic}) {

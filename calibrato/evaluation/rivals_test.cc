@@ -69,7 +69,8 @@ TEST(Rivals, OutsideProgramsWantImages) {
 
 TEST(ForeignCamera, MrcalReadsOurCorners) {
   const Rig rig = PaperRig();
-  const ExecutableMotion motion = Plan(HandcraftedMotion(Task::kIntrinsic), Carrier::kFree, rig);
+  const ExecutableMotion motion =
+      MakeExecutable(HandcraftedMotion(Task::kIntrinsic), Carrier::kFree, rig);
   std::vector<BoardView> views =
       RecordForTrial(Task::kIntrinsic, rig, motion, Fidelity::kFast, Rng(1)).views;
   const Camera& camera = rig.cameras.front();
