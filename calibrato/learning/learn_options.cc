@@ -88,7 +88,9 @@ int NumWarmUpEpisodes(const LearnOptions& options) {
 }
 
 void CheckOptions(const LearnOptions& options) {
-  CheckRange("episodes", options.num_episodes, 2, kMany);
+  // A first stage has a warm-up and something to train; each other one has something to train.
+  const int num_at_least = 1 + std::max(1, static_cast<int>(options.stages.size()));
+  CheckRange("episodes", options.num_episodes, num_at_least, kMany);
   CheckRange("warm-up episodes", NumWarmUpEpisodes(options), 1, options.num_episodes - 1);
   if (options.stages.empty()) {
     throw InputError({"option out of range", "stages", "there is none", "give at least one"});

@@ -80,8 +80,18 @@ TEST(PaperStages, AreThePapers) {
   EXPECT_EQ(StageOf(options, 1649), 1U);
 }
 
+TEST(PaperStages, OfTwoEpisodesAreRefused) {
+  LearnOptions options;
+  options.num_episodes = 2;
+  CheckOptions(options);
+  options.stages = PaperStages(Task::kExtrinsic, 2);
+  EXPECT_THAT([&] { CheckOptions(options); },
+              ThrowsMessage<InputError>(
+                  AllOf(HasSubstr("episodes"), HasSubstr("expected 3 to"), HasSubstr("found 2"))));
+}
+
 TEST(PaperStages, OfAnyLengthHaveSomethingToTrainInEach) {
-  for (int episodes = 2; episodes < 100; ++episodes) {
+  for (int episodes = 3; episodes < 100; ++episodes) {
     LearnOptions options;
     options.num_episodes = episodes;
     options.stages = PaperStages(Task::kExtrinsic, episodes);
