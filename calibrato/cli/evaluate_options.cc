@@ -43,7 +43,7 @@ MotionUnderTrial ReadPolicyMotion(const std::string& words) {
                       "write --policy fine-tuned=DIR"});
   }
   const fs::path path = PolicyFolder(folder);
-  MotionUnderTrial policy{name, ReadMotion((path / "motion.yaml").string()), {}};
+  MotionUnderTrial policy{name, ReadMotion((path / "motion.yaml").string()), {}, true};
   if (fs::exists(path / "policy.yaml")) {
     const Value header = ReadYaml((path / "policy.yaml").string());
     policy.task = TaskIn(&header);

@@ -1,6 +1,8 @@
 #include "calibrato/cli/evaluate_parts.h"
 
 #include <cstdio>
+#include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -44,19 +46,6 @@ std::vector<Column> WithFirst(const Column& first, std::vector<Column> columns) 
   return columns;
 }
 
-void AddCharts(const std::vector<Column>& columns, const std::vector<Chart>& charts,
-               EvaluationPart* part) {
-  const std::string kind = part->result.At("kind").AsString();
-  Value drawn = Value::Array();
-  for (size_t k = 0; k < charts.size(); ++k) {
-    drawn.Append(ToValue(charts[k]));
-    part->files[kind + (charts.size() == 1 ? "" : "-" + std::to_string(k + 1)) + ".csv"] =
-        ChartCsv(charts[k]);
-  }
-  part->plots = Value::Object();
-  part->plots.Set("columns", ToValue(columns)).Set("charts", std::move(drawn));
-}
-
 // One line a row, of those columns that are numbers.
 std::string RowsText(const Value& result, const std::vector<Column>& columns) {
   std::string text;
@@ -84,6 +73,26 @@ std::string RowsText(const Value& result, const std::vector<Column>& columns) {
     text += "\n";
   }
   return text;
+}
+
+// A table and charts beside it.
+EvaluationPart PartWithCharts(const std::string& title, Value result,
+                              const std::vector<Column>& columns,
+                              const std::vector<Chart>& charts) {
+  EvaluationPart part;
+  part.title = title;
+  part.result = std::move(result);
+  part.text = RowsText(part.result, columns);
+  const std::string kind = part.result.At("kind").AsString();
+  Value drawn = Value::Array();
+  for (size_t k = 0; k < charts.size(); ++k) {
+    drawn.Append(ToValue(charts[k]));
+    part.files[kind + (charts.size() == 1 ? "" : "-" + std::to_string(k + 1)) + ".csv"] =
+        ChartCsv(charts[k]);
+  }
+  part.plots = Value::Object();
+  part.plots.Set("columns", ToValue(columns)).Set("charts", std::move(drawn));
+  return part;
 }
 
 EvaluationPart MakeTable(const std::string& kind, const std::string& title,
@@ -126,12 +135,7 @@ EvaluationPart MakeFigure4(const EvaluateOptions& options, const GlobalOptions& 
   const Figure4 figure = EvaluateFigure4(setting, ReadMotionsUnderTrial(options));
   const std::vector<Column> columns =
       WithFirst({"hfov_rad", "field of view", "rad", ""}, kErrorColumns);
-  EvaluationPart part;
-  part.title = "Figure 4";
-  part.result = ToValue(figure);
-  part.text = RowsText(part.result, columns);
-  AddCharts(columns, ChartsOf(figure), &part);
-  return part;
+  return PartWithCharts("Figure 4", ToValue(figure), columns, ChartsOf(figure));
 }
 
 EvaluationPart MakeFigure5(const EvaluateOptions& options, const GlobalOptions& global,
@@ -139,12 +143,7 @@ EvaluationPart MakeFigure5(const EvaluateOptions& options, const GlobalOptions& 
   const ContestSetting setting =
       SettingOf(options, global, OnlyTask(options, Task::kExtrinsic, "figure 5"), num_rigs);
   const Table1 table = EvaluateTable1({setting, ReadMotionsUnderTrial(options)});
-  EvaluationPart part;
-  part.title = "Figure 5";
-  part.result = Figure5Value(table);
-  part.text = RowsText(part.result, kErrorColumns);
-  AddCharts(kErrorColumns, Figure5Charts(table), &part);
-  return part;
+  return PartWithCharts("Figure 5", Figure5Value(table), kErrorColumns, Figure5Charts(table));
 }
 
 EvaluationPart MakeFigure7(const EvaluateOptions& options, const GlobalOptions& global,
@@ -154,17 +153,13 @@ EvaluationPart MakeFigure7(const EvaluateOptions& options, const GlobalOptions& 
   const Figure7 figure = EvaluateFigure7(setting, ReadMotionsUnderTrial(options));
   const std::vector<Column> columns = {
       {"policy", "motion", "", ""},
+      {"member", "of its name", "", ""},
       {"reprojection_rms_px", "reprojection", "px", ""},
       {"gyro_rms_normalised", "gyroscope residuals over noise", "", ""},
       {"accel_rms_normalised", "accelerometer residuals over noise", "", ""},
       {"gyro_bias_error_rad_s", "gyroscope bias error", "rad/s", ""},
       {"accel_bias_error_m_s2", "accelerometer bias error", "m/s²", ""}};
-  EvaluationPart part;
-  part.title = "Figure 7";
-  part.result = ToValue(figure);
-  part.text = RowsText(part.result, columns);
-  AddCharts(columns, ChartsOf(figure), &part);
-  return part;
+  return PartWithCharts("Figure 7", ToValue(figure), columns, ChartsOf(figure));
 }
 
 EvaluationPart MakePareto(const EvaluateOptions& options, const GlobalOptions& global,
@@ -176,12 +171,7 @@ EvaluationPart MakePareto(const EvaluateOptions& options, const GlobalOptions& g
   }
   std::vector<Column> columns = WithFirst({"num_loops", "loops", "", ""}, kErrorColumns);
   columns = WithFirst({"scale", "scale", "", ""}, std::move(columns));
-  EvaluationPart part;
-  part.title = "Error against budget";
-  part.result = ToValue(tasks);
-  part.text = RowsText(part.result, columns);
-  AddCharts(columns, ChartsOf(tasks), &part);
-  return part;
+  return PartWithCharts("Error against budget", ToValue(tasks), columns, ChartsOf(tasks));
 }
 
 EvaluationPart MakeRivals(const EvaluateOptions& options, const GlobalOptions& global,
@@ -194,20 +184,19 @@ EvaluationPart MakeRivals(const EvaluateOptions& options, const GlobalOptions& g
     PrintWarnings(warnings);
   }
   std::vector<Rivals> tasks;
-  EvaluationPart part;
+  std::map<std::string, double> seconds;
   for (const Task task : TasksOf(options)) {
     tasks.push_back(
         EvaluateRivals(SettingOf(options, global, task, num_rigs), motions,
                        task == Task::kExtrinsic ? outside : std::vector<OutsideEstimator>()));
-    for (const auto& [estimator, seconds] : tasks.back().seconds) {
-      part.seconds[TaskName(task) + "_" + estimator + "_s"] = seconds;
+    for (const auto& [estimator, spent] : tasks.back().seconds) {
+      seconds[TaskName(task) + "_" + estimator + "_s"] = spent;
     }
   }
-  const std::vector<Column> columns = WithFirst({"estimator", "estimator", "", ""}, kErrorColumns);
-  part.title = "Estimators compared";
-  part.result = ToValue(tasks);
-  part.text = RowsText(part.result, columns);
-  AddCharts(columns, ChartsOf(tasks), &part);
+  EvaluationPart part =
+      PartWithCharts("Estimators compared", ToValue(tasks),
+                     WithFirst({"estimator", "estimator", "", ""}, kErrorColumns), ChartsOf(tasks));
+  part.seconds = std::move(seconds);
   return part;
 }
 

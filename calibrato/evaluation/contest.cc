@@ -23,14 +23,10 @@ void CheckFidelity(const ContestSetting& setting) {
   if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
 }
 
-// Before boards that stand elsewhere the motion is planned anew.
 Trial TrialOf(const ContestSetting& setting, const Rig& rig, const ExecutableMotion& motion,
               const Rng& noise) {
-  if (setting.fixed_rig || IsPapersScene(setting.rigs)) {
-    return RunTrial(setting.task, rig, motion, setting.fidelity, noise);
-  }
   try {
-    return RunTrial(setting.task, rig, BeforeBoard(motion, rig), setting.fidelity, noise);
+    return RunTrial(setting.task, rig, MotionOnRig(setting, motion, rig), setting.fidelity, noise);
   } catch (const InputError& error) {
     Trial failed;
     failed.failure = error.what();
@@ -59,6 +55,12 @@ Rig PlanningScene(const ContestSetting& setting) {
 
 std::string RigsName(const ContestSetting& setting) {
   return setting.fixed_rig ? "file" : RigDistributionName(setting.rigs);
+}
+
+ExecutableMotion MotionOnRig(const ContestSetting& setting, const ExecutableMotion& motion,
+                             const Rig& rig) {
+  const bool stands_where_planned = setting.fixed_rig || IsPapersScene(setting.rigs);
+  return stands_where_planned ? motion : BeforeBoard(motion, rig);
 }
 
 ContestTrials RunContest(const ContestSetting& setting, const std::vector<Rig>& rigs,

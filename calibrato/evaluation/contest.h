@@ -34,6 +34,12 @@ struct ContestSetting {
 /// "paper", or "file".
 [[nodiscard]] std::string RigsName(const ContestSetting& setting);
 
+/// The motion as one rig makes it: planned anew before boards that stand elsewhere than where it
+/// was planned.
+/// @throws InputError if it fits there at no scale.
+[[nodiscard]] ExecutableMotion MotionOnRig(const ContestSetting& setting,
+                                           const ExecutableMotion& motion, const Rig& rig);
+
 /// trials[contestant][member][rig].
 using ContestTrials = std::vector<std::vector<std::vector<Trial>>>;
 

@@ -96,5 +96,32 @@ TEST(Contestants, MotionsOfOneNameAreMembersOfOneMethod) {
   EXPECT_EQ(contestants[1].num_members(), 1U);
 }
 
+TEST(Contestants, PoliciesAimAtTheBoardAndWhatSomebodyPlacedStaysThere) {
+  Rig scene = PaperRig();
+  scene.T_w_g.t.y() += 0.1;
+  const Motion motion = HandcraftedMotion(Task::kIntrinsic);
+  const auto contestants = BroughtContestants({{"learned", motion, {}, true}, {"file", motion, {}}},
+                                              Task::kIntrinsic, Carrier::kFree, scene);
+  ASSERT_EQ(contestants.size(), 2U);
+  const BasePose& aimed = contestants[0].motions[0].timed->motion.base_pose;
+  const BasePose& placed = contestants[1].motions[0].timed->motion.base_pose;
+  EXPECT_EQ(placed, motion.base_pose);
+  EXPECT_EQ(aimed, BasePoseBeforeBoard(scene));
+  EXPECT_FALSE(aimed == placed);
+}
+
+TEST(Contest, MotionsArePlannedAnewBeforeBoardsThatStandElsewhere) {
+  ContestSetting setting = Extrinsic(2);
+  setting.rigs = RigDistribution::kBroad;
+  const std::vector<Rig> rigs = RigsUnderTrial(setting);
+  const ExecutableMotion planned =
+      MakeExecutable(HandcraftedMotion(Task::kExtrinsic), Carrier::kFree, PaperRig());
+  const ExecutableMotion moved = MotionOnRig(setting, planned, rigs[0]);
+  EXPECT_EQ(moved.timed->motion.base_pose, BasePoseBeforeBoard(rigs[0]));
+  setting.rigs = RigDistribution::kPaper;
+  EXPECT_EQ(MotionOnRig(setting, planned, PaperRig()).timed->motion.base_pose,
+            planned.timed->motion.base_pose);
+}
+
 }  // namespace
 }  // namespace calibrato

@@ -20,6 +20,11 @@ ExecutableMotion Planned(TimedMotion timed) {
   return planned;
 }
 
+Motion Aimed(Motion motion, const Rig& scene) {
+  motion.base_pose = BasePoseBeforeBoard(scene, motion.base_pose);
+  return motion;
+}
+
 }  // namespace
 
 ExecutableMotion MakeExecutable(Motion motion, Carrier carrier, const Rig& scene) {
@@ -36,8 +41,9 @@ ExecutableMotion MakeExecutable(const RecordedTrajectory& trajectory, const Rig&
 }
 
 ExecutableMotion MakeExecutable(const MotionUnderTrial& motion, Carrier carrier, const Rig& scene) {
-  if (const auto* looped = std::get_if<Motion>(&motion.way))
-    return MakeExecutable(*looped, carrier, scene);
+  if (const auto* looped = std::get_if<Motion>(&motion.way)) {
+    return MakeExecutable(motion.aims_at_board ? Aimed(*looped, scene) : *looped, carrier, scene);
+  }
   return MakeExecutable(std::get<RecordedTrajectory>(motion.way), scene);
 }
 
@@ -56,16 +62,14 @@ Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& 
   Contestant random{"random", {}, true};
   random.motions = ParallelMap<ExecutableMotion>(rigs.size(), [&](size_t i) {
     Rng draws = rng.Stream("evaluation motion", i);
-    Motion motion = RandomMotion(task, draws);
-    motion.base_pose = BasePoseBeforeBoard(rigs[i]);
-    return MakeExecutable(std::move(motion), carrier, rigs[i]);
+    return MakeExecutable(Aimed(RandomMotion(task, draws), rigs[i]), carrier, rigs[i]);
   });
   return random;
 }
 
 Contestant FixedContestant(const std::string& policy, const Motion& motion, Carrier carrier,
                            const Rig& scene) {
-  return {policy, {MakeExecutable(motion, carrier, scene)}, false};
+  return {policy, {MakeExecutable(Aimed(motion, scene), carrier, scene)}, false};
 }
 
 std::vector<Contestant> BroughtContestants(const std::vector<MotionUnderTrial>& motions, Task task,

@@ -20,6 +20,9 @@ struct MotionUnderTrial {
   std::string policy;
   std::variant<Motion, RecordedTrajectory> way;
   std::optional<Task> task;  ///< That it was made for; else it is judged in every task.
+  /// Its base pose is that of the scene it was learned in: before a rig file's board it is found
+  /// anew. What somebody wrote for a rig stays where it was put.
+  bool aims_at_board = false;
 };
 
 /// A motion, ready to be executed.
@@ -62,8 +65,7 @@ struct Contestant {
 [[nodiscard]] Contestant RandomContestant(Task task, Carrier carrier, const std::vector<Rig>& rigs,
                                           const Rng& rng);
 
-/// One of a kind, planned in the scene: planning sees the rig only through the board's place in
-/// view.
+/// One of a kind, planned before the scene's board (BasePoseBeforeBoard).
 [[nodiscard]] Contestant FixedContestant(const std::string& policy, const Motion& motion,
                                          Carrier carrier, const Rig& scene);
 

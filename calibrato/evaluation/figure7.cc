@@ -35,9 +35,11 @@ Recorded Record(const Rig& rig, const ExecutableMotion& motion, Fidelity fidelit
           SimulateImu(rig, motion.path, kStart, imu_noise)};
 }
 
-EstimatorOutput Estimate(const std::string& policy, const Rig& rig, Recorded recorded) {
+EstimatorOutput Estimate(const std::string& policy, size_t member, const Rig& rig,
+                         Recorded recorded) {
   EstimatorOutput output;
   output.policy = policy;
+  output.member = member;
   output.true_gyro_bias = recorded.imu.mean_gyro_bias;
   output.true_accel_bias = recorded.imu.mean_accel_bias;
   const CameraImuProblem problem =
@@ -99,6 +101,7 @@ Value RowOf(const Figure7& figure, const EstimatorOutput& output, const Rig& rig
   const CameraImuCalibration& calibration = output.calibration;
   Value row = SettingValue(figure.setting);
   row.Set("policy", output.policy)
+      .Set("member", static_cast<int64_t>(output.member))
       .Set("n", 1)
       .Set("termination", TerminationName(calibration.termination));
   if (!calibration.state) return row;
@@ -119,10 +122,16 @@ Value RowOf(const Figure7& figure, const EstimatorOutput& output, const Rig& rig
   return row;
 }
 
-ChartSeries NormsOverTime(const std::string& policy, const std::vector<double>& time_s,
+// As legends call it.
+std::string NameOf(const EstimatorOutput& output) {
+  return output.member == 1 ? output.policy
+                            : output.policy + " (" + std::to_string(output.member) + ")";
+}
+
+ChartSeries NormsOverTime(const std::string& name, const std::vector<double>& time_s,
                           const std::vector<Eigen::Vector3d>& residuals) {
   // The largest of each stretch of time, so that nothing that stands out is lost.
-  ChartSeries series{policy, {}, {}, {}, {}};
+  ChartSeries series{name, {}, {}, {}, {}};
   const size_t stride = std::max<size_t>(1, residuals.size() / kMostPoints);
   for (size_t i = 0; i < residuals.size(); i += stride) {
     double largest = 0.0;
@@ -137,7 +146,7 @@ ChartSeries NormsOverTime(const std::string& policy, const std::vector<double>& 
 
 ChartSeries BiasError(const EstimatorOutput& output, bool is_gyro) {
   const CameraImuState& state = *output.calibration.state;
-  ChartSeries series{output.policy, {}, {}, {}, {}};
+  ChartSeries series{NameOf(output), {}, {}, {}, {}};
   const std::vector<ImuBias>& biases = state.imus.front().biases;
   for (size_t k = 0; k < biases.size(); ++k) {
     series.x.push_back(static_cast<double>(k) * state.block_duration_s());
@@ -177,9 +186,11 @@ Figure7 EvaluateFigure7(const ContestSetting& setting,
   }
   const Rng noise = Rng(setting.seed).Stream("figure 7");
   for (const Contestant& contestant : contestants) {
-    figure.outputs.push_back(
-        Estimate(contestant.policy, scene,
-                 Record(scene, contestant.motions.front(), setting.fidelity, noise)));
+    for (size_t m = 0; m < contestant.num_members(); ++m) {
+      figure.outputs.push_back(
+          Estimate(contestant.policy, m + 1, scene,
+                   Record(scene, contestant.motions[m], setting.fidelity, noise)));
+    }
   }
   return figure;
 }
@@ -209,7 +220,7 @@ std::vector<Chart> ChartsOf(const Figure7& figure) {
     const CameraImuCalibration& calibration = output.calibration;
     if (!calibration.state) continue;
     const std::vector<Eigen::Vector2d> residuals = CornerResiduals(calibration);
-    ChartSeries dots{output.policy, {}, {}, {}, {}};
+    ChartSeries dots{NameOf(output), {}, {}, {}, {}};
     const size_t stride = std::max<size_t>(1, residuals.size() / kMostPoints);
     for (size_t i = 0; i < residuals.size(); i += stride) {
       dots.x.push_back(residuals[i].x());
@@ -217,9 +228,9 @@ std::vector<Chart> ChartsOf(const Figure7& figure) {
     }
     corners.series.push_back(std::move(dots));
     gyro.series.push_back(
-        NormsOverTime(output.policy, output.gyro_time_s, calibration.residuals.gyro.front()));
+        NormsOverTime(NameOf(output), output.gyro_time_s, calibration.residuals.gyro.front()));
     accel.series.push_back(
-        NormsOverTime(output.policy, output.accel_time_s, calibration.residuals.accel.front()));
+        NormsOverTime(NameOf(output), output.accel_time_s, calibration.residuals.accel.front()));
     gyro_bias.series.push_back(BiasError(output, true));
     accel_bias.series.push_back(BiasError(output, false));
   }

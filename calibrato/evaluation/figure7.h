@@ -14,6 +14,7 @@ namespace calibrato {
 /// What the estimator says of one recording.
 struct EstimatorOutput {
   std::string policy;
+  size_t member = 1;  ///< Of the motions of that name, the first is 1.
   CameraImuCalibration calibration;
   std::vector<double> gyro_time_s;   ///< Of the residuals, since the trajectory's beginning.
   std::vector<double> accel_time_s;  ///< Likewise.
@@ -32,10 +33,10 @@ struct Figure7 {
 [[nodiscard]] Figure7 EvaluateFigure7(const ContestSetting& setting,
                                       const std::vector<MotionUnderTrial>& motions);
 
-/// {"kind": "figure7", "rows": [..]}: for each motion "termination", "reprojection_rms_px",
-/// "reprojection_mean_px" [u, v], "reprojection_skewness" [u, v], "gyro_rms_rad_s",
-/// "accel_rms_m_s2", each "_normalised" too, and "gyro_bias_error_rad_s", "accel_bias_error_m_s2"
-/// of the mean biases.
+/// {"kind": "figure7", "rows": [..]}: for each motion "policy", "member", "termination",
+/// "reprojection_rms_px", "reprojection_mean_px" [u, v], "reprojection_skewness" [u, v],
+/// "gyro_rms_rad_s", "accel_rms_m_s2", each "_normalised" too, and "gyro_bias_error_rad_s",
+/// "accel_bias_error_m_s2" of the mean biases.
 [[nodiscard]] Value ToValue(const Figure7& figure);
 [[nodiscard]] std::vector<Chart> ChartsOf(const Figure7& figure);
 

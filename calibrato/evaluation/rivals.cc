@@ -208,6 +208,36 @@ std::vector<Estimator> EstimatorsFor(const ContestSetting& setting, const Rig& s
   return estimators;
 }
 
+// One rig and one motion, with each estimator.
+std::vector<Outcome> TryAll(const ContestSetting& setting, const Rig& rig,
+                            const ExecutableMotion& planned,
+                            const std::vector<Estimator>& estimators, size_t most_frames,
+                            const Rng& noise) {
+  ExecutableMotion motion = planned;
+  TrialRecording recording;
+  std::string failure;
+  try {
+    motion = MotionOnRig(setting, planned, rig);
+    recording = RecordForTrial(setting.task, rig, motion, setting.fidelity, noise);
+    if (setting.task == Task::kIntrinsic) {
+      recording = Thinned(std::move(recording), rig, most_frames);
+    }
+  } catch (const InputError& error) {
+    failure = error.what();
+  }
+  const Case tried{&rig, &motion, &recording, setting.fidelity, noise};
+  std::vector<Outcome> outcomes;
+  for (const Estimator& estimator : estimators) {
+    Outcome outcome =
+        failure.empty() ? estimator.estimate(tried) : FailedOutcome(tried, failure, 0.0);
+    outcome.trial.path_length_m = motion.path_length_m;
+    outcome.trial.path_length_original_m = motion.path_length_original_m;
+    outcome.trial.motion_s = motion.path.duration_s;
+    outcomes.push_back(std::move(outcome));
+  }
+  return outcomes;
+}
+
 }  // namespace
 
 Rivals EvaluateRivals(const ContestSetting& setting, const std::vector<MotionUnderTrial>& motions,
@@ -228,35 +258,32 @@ Rivals EvaluateRivals(const ContestSetting& setting, const std::vector<MotionUnd
     const Rng noise = rng.Stream("evaluation noise", i);
     std::vector<Outcome> outcomes;
     for (const Contestant& contestant : contestants) {
-      const ExecutableMotion& motion = contestant.MotionFor(0, i);
-      TrialRecording recording =
-          RecordForTrial(setting.task, rigs[i], motion, setting.fidelity, noise);
-      if (setting.task == Task::kIntrinsic)
-        recording = Thinned(std::move(recording), rigs[i], most_frames);
-      const Case tried{&rigs[i], &motion, &recording, setting.fidelity, noise};
-      for (const Estimator& estimator : estimators) {
-        Outcome outcome = estimator.estimate(tried);
-        outcome.trial.path_length_m = motion.path_length_m;
-        outcome.trial.path_length_original_m = motion.path_length_original_m;
-        outcome.trial.motion_s = motion.path.duration_s;
-        outcomes.push_back(std::move(outcome));
+      for (size_t m = 0; m < contestant.num_members(); ++m) {
+        for (Outcome& outcome :
+             TryAll(setting, rigs[i], contestant.MotionFor(m, i), estimators, most_frames, noise)) {
+          outcomes.push_back(std::move(outcome));
+        }
       }
     }
     progress.Advance();
     return outcomes;
   });
   Rivals rivals{setting, {}, {}};
-  size_t k = 0;
+  size_t first = 0;  // Of the contestant's outcomes: member by member, estimator by estimator.
   for (const Contestant& contestant : contestants) {
-    for (const Estimator& estimator : estimators) {
-      RivalRow row{estimator.name, contestant.policy, {}};
-      for (const std::vector<Outcome>& outcomes : of_rigs) {
-        row.trials.push_back(outcomes[k].trial);
-        rivals.seconds[estimator.name] += outcomes[k].seconds;
+    for (size_t e = 0; e < estimators.size(); ++e) {
+      RivalRow row{estimators[e].name, contestant.policy, {}};
+      for (size_t m = 0; m < contestant.num_members(); ++m) {
+        std::vector<Trial>& trials = row.trials.emplace_back();
+        for (const std::vector<Outcome>& outcomes : of_rigs) {
+          const Outcome& outcome = outcomes[first + m * estimators.size() + e];
+          trials.push_back(outcome.trial);
+          rivals.seconds[estimators[e].name] += outcome.seconds;
+        }
       }
       rivals.rows.push_back(std::move(row));
-      ++k;
     }
+    first += contestant.num_members() * estimators.size();
   }
   return rivals;
 }
@@ -267,7 +294,7 @@ Value ToValue(const std::vector<Rivals>& tasks) {
     const Rng rng = Rng(rivals.setting.seed).Stream("rivals " + TaskName(rivals.setting.task));
     for (size_t k = 0; k < rivals.rows.size(); ++k) {
       const RivalRow& made = rivals.rows[k];
-      Value row = MethodRow(rivals.setting, made.policy, {made.trials}, rng.Stream("row", k));
+      Value row = MethodRow(rivals.setting, made.policy, made.trials, rng.Stream("row", k));
       row.Set("estimator", made.estimator);
       rows.Append(std::move(row));
     }
@@ -288,7 +315,7 @@ std::vector<Chart> ChartsOf(const std::vector<Rivals>& tasks) {
     chart.is_y_logarithmic = true;
     for (const RivalRow& row : rivals.rows) {
       ChartSeries series{row.estimator + ", " + row.policy, {}, {}, {}, {}};
-      for (const double error : Existing(FiguresOf({row.trials}, &Trial::relative_error))) {
+      for (const double error : Existing(FiguresOf(row.trials, &Trial::relative_error))) {
         series.y.push_back(100.0 * error);
       }
       chart.series.push_back(std::move(series));

@@ -16,7 +16,7 @@ namespace calibrato {
 struct RivalRow {
   std::string estimator;
   std::string policy;
-  std::vector<Trial> trials;  ///< One a rig.
+  std::vector<std::vector<Trial>> trials;  ///< [member of the motion's method][rig]
 };
 
 /// Estimator by motion, each with each, on the same recordings.
