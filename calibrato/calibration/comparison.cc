@@ -129,6 +129,33 @@ Significance SignificanceOfSum(double sum_of_squares, const Eigen::MatrixXd& roo
   return significance;
 }
 
+// Least squares in the metric of the covariance, along the direction in which both focal lengths
+// grow alike; nothing where one of them was held.
+FocalChange FocalChangeOf(const CameraEstimate& first, const Eigen::VectorXd& difference,
+                          const Eigen::MatrixXd& covariance) {
+  const Eigen::Index focal = CameraModel::FocalIndex(first.model.name());
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(difference.size());
+  direction.segment<2>(focal) = first.model.parameters().segment<2>(focal);
+  std::vector<Eigen::Index> free;
+  for (Eigen::Index i = 0; i < difference.size(); ++i) {
+    if (covariance(i, i) > 0.0) free.push_back(i);
+  }
+  if (!(covariance(focal, focal) > 0.0) || !(covariance(focal + 1, focal + 1) > 0.0)) return {};
+  const Eigen::VectorXd scale = covariance.diagonal()(free).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd correlation =
+      scale.asDiagonal() * covariance(free, free) * scale.asDiagonal();
+  const Eigen::VectorXd along = scale.cwiseProduct(direction(free));
+  const Eigen::VectorXd weighted = correlation.ldlt().solve(along);
+  const double information = along.dot(weighted);
+  FocalChange change;
+  change.relative = weighted.dot(scale.cwiseProduct(difference(free))) / information;
+  change.sigma = 1.0 / std::sqrt(information);
+  change.significance.degrees = 1.0;
+  change.significance.statistic = std::pow(change.relative / change.sigma, 2);
+  change.significance.probability = ChiSquareTail(change.significance.statistic, 1.0);
+  return change;
+}
+
 // A root L with C = L L'.
 Eigen::MatrixXd RootOf(const Eigen::MatrixXd& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
@@ -205,6 +232,11 @@ CameraComparison CompareCameras(const CameraEstimate& first, const CameraEstimat
           ? SignificanceOf(second.model.parameters() - first.model.parameters(),
                            first.covariance + second.covariance)
           : SignificanceOfSum(sum_of_squares, root);
+  if (comparison.by_parameters) {
+    comparison.focal_change =
+        FocalChangeOf(first, second.model.parameters() - first.model.parameters(),
+                      first.covariance + second.covariance);
+  }
   return comparison;
 }
 

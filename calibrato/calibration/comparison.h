@@ -38,6 +38,15 @@ struct Significance {
 [[nodiscard]] Significance SignificanceOf(const Eigen::VectorXd& difference,
                                           const Eigen::MatrixXd& covariance_of_difference);
 
+/// By how much the focal lengths changed, if nothing else of the lens did: focus and temperature do
+/// that. Told from all parameters, which would have to have changed with them, it is known far
+/// better than the difference of fu alone.
+struct FocalChange {
+  double relative = std::numeric_limits<double>::quiet_NaN();  ///< Of fu and fv alike [-].
+  double sigma = std::numeric_limits<double>::quiet_NaN();
+  Significance significance;  ///< With one degree of freedom.
+};
+
 struct CameraComparison {
   /// The turn that is taken out before pixels are compared: a direction r of the first camera is
   /// Exp(rotation) r in the second. It moves the image as a shift of the principal point does, and
@@ -54,6 +63,7 @@ struct CameraComparison {
   /// held; else of the difference in pixels.
   Significance significance;
   bool by_parameters = false;  ///< Which of the two it is.
+  FocalChange focal_change;    ///< Known where it is by parameters.
 };
 
 /// @throws InputError if the resolutions differ, or if no part of the image is seen by both.

@@ -135,6 +135,62 @@ TEST(CompareCameras, IsSeldomWrongAboutCalibrationsOfTheSameLens) {
   EXPECT_LE(num_significant, 2.0 * n * kSignificance + 4.0 * std::sqrt(2.0 * n * kSignificance));
 }
 
+TEST(CompareCameras, TellsAChangeOfFocalLengthByHand) {
+  // Uncorrelated: fu and fv 6 and 3 px longer of 600, each with variance 1 + 1: their weighted
+  // mean, 4.5 px of 600, known to sqrt(2 / 2) px.
+  const CameraEstimate a{Pinhole(600.0, 320.0), kImage, Diagonal({1.0, 1.0, 1.0, 1.0})};
+  const CameraEstimate b{{"pinhole-none", Eigen::Vector4d(606.0, 603.0, 320.0, 239.5)},
+                         kImage,
+                         Diagonal({1.0, 1.0, 1.0, 1.0})};
+  const FocalChange change = CompareCameras(a, b).focal_change;
+  EXPECT_NEAR(change.relative, 4.5 / 600.0, 1e-12);
+  EXPECT_NEAR(change.sigma, 1.0 / 600.0, 1e-12);
+  EXPECT_NEAR(change.significance.statistic, 4.5 * 4.5, 1e-9);
+  CameraEstimate held = a;
+  held.covariance(0, 0) = 0.0;
+  CameraEstimate held_b = a;
+  held_b.covariance(0, 0) = 0.0;
+  EXPECT_FALSE(CompareCameras(held, held_b).focal_change.significance.is_known());
+}
+
+// Two recordings of one lens, and one of a lens whose focal length is three standard deviations of
+// the difference longer, tested with an error rate of 4 % (two tests of 2 %, for which it
+// needs 2.33 sigma: three are found three times in four) and of 0.27 %.
+TEST(CompareCameras, FindsAFocalLengthThatMovedByThreeSigmas) {
+  const int num_pairs = FullSample() ? 400 : 40;
+  const Rng rng(5);
+  const CameraModel lens = Radtan(585.0, 322.0, -0.2);
+  const auto differs = [](const CameraComparison& comparison, double level) {
+    return comparison.significance.probability < level / 2.0 ||
+           comparison.focal_change.significance.probability < level / 2.0;
+  };
+  int num_same = 0;
+  int num_moved = 0;
+  int num_moved_far = 0;
+  for (int i = 0; i < num_pairs; ++i) {
+    const auto index = static_cast<uint64_t>(4 * i);
+    const CameraEstimate a = Calibrated(lens, "pinhole-radtan", rng, index);
+    const CameraComparison same =
+        CompareCameras(a, Calibrated(lens, "pinhole-radtan", rng, index + 1));
+    num_same += differs(same, 0.04);
+    const auto moved_by = [&](double sigmas, uint64_t recording) {
+      Eigen::VectorXd longer = lens.parameters();
+      longer.head<2>() *= 1.0 + sigmas * same.focal_change.sigma;
+      const CameraModel moved("pinhole-radtan", longer);
+      return CompareCameras(a, Calibrated(moved, "pinhole-radtan", rng, recording));
+    };
+    num_moved += differs(moved_by(3.0, index + 2), 0.04);
+    num_moved_far += differs(moved_by(6.0, index + 3), kSignificance);
+  }
+  std::printf("of %d pairs: %d of one lens differ, %d of one moved by 3 sigma, %d by 6 sigma\n",
+              num_pairs, num_same, num_moved, num_moved_far);
+  // 5 % of 400; of few pairs three deviations of what 4 % let expect.
+  EXPECT_LE(num_same,
+            FullSample() ? 0.05 * num_pairs : 0.04 * num_pairs + 3.0 * std::sqrt(0.04 * num_pairs));
+  EXPECT_GE(num_moved, 0.75 * num_pairs - 3.0 * std::sqrt(0.75 * 0.25 * num_pairs));
+  EXPECT_GE(num_moved_far, 0.95 * num_pairs);
+}
+
 TEST(CompareCameras, RefusesImagesOfDifferentSizes) {
   const CameraEstimate a{Pinhole(600.0, 320.0), kImage, {}};
   const CameraEstimate b{Pinhole(600.0, 320.0), {1280, 960}, {}};

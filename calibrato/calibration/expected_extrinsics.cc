@@ -51,14 +51,18 @@ struct Support {
 
 class Layout {
  public:
-  explicit Layout(double duration_s)
-      : num_segments_(std::max(1, NumSegments(duration_s, kKnotSpacing))),
+  /// @param num_parameters  Of the camera, behind the biases in the border; 0 where it is known.
+  explicit Layout(double duration_s, int num_parameters = 0)
+      : num_parameters_(num_parameters),
+        num_segments_(std::max(1, NumSegments(duration_s, kKnotSpacing))),
         num_pieces_(std::max(1, static_cast<int>(std::ceil(duration_s / kBiasPiece - 1e-9)))) {}
 
   int num_points() const { return num_segments_ + kOrder - 1; }
   int num_blocks() const { return (num_points() + kBlockPoints - 1) / kBlockPoints + 1; }
   int num_pieces() const { return num_pieces_; }
-  int border_size() const { return kBiases + 6 * num_pieces_; }
+  int num_parameters() const { return num_parameters_; }
+  int border_size() const { return parameter_column() + num_parameters_; }
+  int parameter_column() const { return kBiases + 6 * num_pieces_; }
   int bias_column(int piece) const { return kBiases + 6 * piece; }
 
   Support At(double t_s) const {
@@ -86,6 +90,7 @@ class Layout {
   }
 
  private:
+  int num_parameters_;
   int num_segments_;
   int num_pieces_;
 };
@@ -94,7 +99,10 @@ class Layout {
 // to the system touches all of two blocks and the border.
 class Assembly {
  public:
-  Assembly(const Layout& layout, ArrowheadSystem* system) : layout_(layout), system_(*system) {}
+  Assembly(const Layout& layout, ArrowheadSystem* system)
+      : layout_(layout),
+        system_(*system),
+        parameters_(MatrixXd::Zero(layout.num_parameters(), kLocalSize)) {}
 
   // The local matrix to add to, at this support.
   LocalMatrix& At(const Support& support) {
@@ -105,6 +113,8 @@ class Assembly {
     }
     return sum_;
   }
+  // What couples the camera's parameters (rows) to the columns of the latest support.
+  MatrixXd& Parameters() { return parameters_; }
 
   void Flush() {
     if (first_ < 0) return;
@@ -119,9 +129,13 @@ class Assembly {
     };
     for (int i = 0; i < kLocalSize; ++i) {
       for (int j = 0; j <= i; ++j) local(column(i), column(j)) = sum_(i, j);
+      for (int k = 0; k < layout_.num_parameters(); ++k) {
+        local(2 * kBlockSize + layout_.parameter_column() + k, column(i)) = parameters_(k, i);
+      }
     }
     system_.Add(block, local);
     sum_.setZero();
+    parameters_.setZero();
     first_ = -1;
   }
 
@@ -129,17 +143,10 @@ class Assembly {
   const Layout& layout_;
   ArrowheadSystem& system_;
   LocalMatrix sum_ = LocalMatrix::Zero();
+  MatrixXd parameters_;
   int first_ = -1;
   int bias_piece_ = -1;
 };
-
-// Two directions at right angles to gravity, times its size: dg = basis * (two small angles).
-Eigen::Matrix<double, 3, 2> GravityDirections(const Vector3d& gravity_g) {
-  const Vector3d u = gravity_g.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> basis;
-  basis << u, gravity_g.normalized().cross(u);
-  return basis * gravity_g.norm();
-}
 
 struct SampleWeights {
   double gyro;   // Of one second [1 / (rad/s)^2]
@@ -319,14 +326,11 @@ PlannedMotionGradient::Frame FrameGradient(const PlannedFrame& frame, const Supp
   return gradient;
 }
 
-}  // namespace
-
-std::optional<ExpectedExtrinsics> ExpectExtrinsics(const PlannedRig& rig,
-                                                   const PlannedMotion& motion,
-                                                   DesignCriterion criterion, bool want_gradient) {
-  assert(motion.duration_s > 0.0 && rig.corner_noise_px > 0.0);
-  const Layout layout(motion.duration_s);
-  const Eigen::Matrix<double, 3, 2> gravity = GravityDirections(rig.gravity_g);
+// The normal equations, and of each frame the information on its pose.
+ArrowheadSystem Assemble(const PlannedRig& rig, const PlannedMotion& motion, const Layout& layout,
+                         std::vector<Matrix6d>* information) {
+  const Eigen::Matrix<double, 3, 2> gravity =
+      rig.gravity_g.norm() * GravityDirections(rig.gravity_g);
   const SampleWeights weights = WeightsOf(rig.noise);
   ArrowheadSystem system(layout.num_blocks(), kBlockSize, layout.border_size());
   Assembly assembly(layout, &system);
@@ -335,22 +339,55 @@ std::optional<ExpectedExtrinsics> ExpectExtrinsics(const PlannedRig& rig,
     const LocalRows rows = ImuRows(instant, support, gravity, weights);
     assembly.At(support).selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
-  std::vector<Matrix6d> information(motion.frames.size(), Matrix6d::Zero());
+  information->assign(motion.frames.size(), Matrix6d::Zero());
+  MatrixXd parameters = MatrixXd::Zero(layout.num_parameters(), layout.num_parameters());
   const double variance = rig.corner_noise_px * rig.corner_noise_px;
   for (size_t i = 0; i < motion.frames.size(); ++i) {
     const PlannedFrame& frame = motion.frames[i];
     if (!(frame.weight > 0.0)) continue;
-    const auto pose = PoseInformationOfFrame(rig.camera, rig.points, frame.T_c_g);
-    if (!pose) continue;
-    information[i] = *pose / variance;
     const Support support = layout.At(frame.t_s);
     const LocalRows rows = FrameRows(frame, support, rig.T_c_i);
-    assembly.At(support) += frame.weight * (rows.transpose() * (information[i] * rows));
+    if (layout.num_parameters() > 0) {
+      const auto joint = JointInformationOfFrame(rig.camera, rig.points, frame.T_c_g);
+      if (!joint) continue;
+      const Eigen::Index n = layout.num_parameters();
+      (*information)[i] = joint->topLeftCorner<6, 6>() / variance;
+      const double weight = frame.weight / variance;
+      LocalMatrix& sum = assembly.At(support);
+      sum += frame.weight * (rows.transpose() * ((*information)[i] * rows));
+      assembly.Parameters() += weight * (joint->bottomLeftCorner(n, 6) * rows);
+      parameters += weight * joint->bottomRightCorner(n, n);
+      continue;
+    }
+    const auto pose = PoseInformationOfFrame(rig.camera, rig.points, frame.T_c_g);
+    if (!pose) continue;
+    (*information)[i] = *pose / variance;
+    assembly.At(support) += frame.weight * (rows.transpose() * ((*information)[i] * rows));
   }
   assembly.Flush();
+  if (layout.num_parameters() > 0) {
+    MatrixXd border = MatrixXd::Zero(layout.border_size() + 1, layout.border_size() + 1);
+    border.block(layout.parameter_column(), layout.parameter_column(), layout.num_parameters(),
+                 layout.num_parameters()) = parameters;
+    system.AddToBorder(border);
+  }
   AddWalks(layout, rig.noise, &system);
   AddWeakPrior(&system);
+  return system;
+}
 
+}  // namespace
+
+std::optional<ExpectedExtrinsics> ExpectExtrinsics(const PlannedRig& rig,
+                                                   const PlannedMotion& motion,
+                                                   DesignCriterion criterion, bool want_gradient) {
+  assert(motion.duration_s > 0.0 && rig.corner_noise_px > 0.0);
+  const Layout layout(motion.duration_s);
+  const Eigen::Matrix<double, 3, 2> gravity =
+      rig.gravity_g.norm() * GravityDirections(rig.gravity_g);
+  const SampleWeights weights = WeightsOf(rig.noise);
+  std::vector<Matrix6d> information;
+  const ArrowheadSystem system = Assemble(rig, motion, layout, &information);
   const auto factor = ArrowheadCholesky::Factor(system, 0.0);
   if (!factor) return std::nullopt;
   const Eigen::LLT<MatrixXd> border(factor->BorderInformation());
@@ -379,6 +416,40 @@ std::optional<ExpectedExtrinsics> ExpectExtrinsics(const PlannedRig& rig,
         FrameGradient(frame, layout.At(frame.t_s), rig, layout, information[i], X));
   }
   return expected;
+}
+
+Eigen::Matrix<double, 3, 2> GravityDirections(const Vector3d& gravity_g) {
+  const Vector3d u = gravity_g.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> directions;
+  directions << u, gravity_g.normalized().cross(u);
+  return directions;
+}
+
+MatrixXd ExtrinsicInformationOf(const PlannedRig& rig, const PlannedMotion& motion,
+                                bool camera_is_known) {
+  constexpr double kGyroBias = 0.1;   // [rad/s]
+  constexpr double kAccelBias = 1.0;  // [m/s^2]
+  const int n = camera_is_known ? 0 : rig.camera.num_parameters();
+  const Layout layout(motion.duration_s, n);
+  std::vector<Matrix6d> information;
+  const ArrowheadSystem system = Assemble(rig, motion, layout, &information);
+  const MatrixXd nothing = MatrixXd::Zero(kBiases + n, kBiases + n);
+  const auto factor = ArrowheadCholesky::Factor(system, 0.0);
+  if (!factor) return nothing;
+  const MatrixXd border = factor->BorderInformation();
+  std::vector<int> kept;
+  for (int k = 0; k < kBiases; ++k) kept.push_back(k);
+  for (int k = 0; k < n; ++k) kept.push_back(layout.parameter_column() + k);
+  std::vector<int> left_out;
+  for (int k = kBiases; k < layout.parameter_column(); ++k) left_out.push_back(k);
+  MatrixXd biases = border(left_out, left_out);
+  biases.diagonal().head<3>().array() += 1.0 / (kGyroBias * kGyroBias);
+  biases.diagonal().segment<3>(3).array() += 1.0 / (kAccelBias * kAccelBias);
+  const Eigen::LLT<MatrixXd> known(biases);
+  if (known.info() != Eigen::Success) return nothing;
+  const MatrixXd coupling = border(left_out, kept);
+  const MatrixXd left = border(kept, kept) - coupling.transpose() * known.solve(coupling);
+  return 0.5 * (left + left.transpose());
 }
 
 }  // namespace calibrato

@@ -105,4 +105,17 @@ struct ExpectedExtrinsics {
                                                                  DesignCriterion criterion,
                                                                  bool want_gradient);
 
+/// Two unit vectors at right angles to gravity: gravity is believed to be off by
+/// |gravity_g| * directions * (two small angles).
+[[nodiscard]] Eigen::Matrix<double, 3, 2> GravityDirections(const Eigen::Vector3d& gravity_g);
+
+/// What the motion alone says of [T_c_i 6, time offset, gravity's two angles], and then of the
+/// camera's parameters unless they are known; trajectory and biases being unknown (the latter but
+/// for 0.1 rad/s and 1 m/s^2). It is the inverse of their marginal covariance, singular where the
+/// motion leaves a direction open, zero where nothing is learned. Adds up over motions of one rig
+/// before one board, a little pessimistically: each has biases of its own.
+[[nodiscard]] Eigen::MatrixXd ExtrinsicInformationOf(const PlannedRig& rig,
+                                                     const PlannedMotion& motion,
+                                                     bool camera_is_known);
+
 }  // namespace calibrato

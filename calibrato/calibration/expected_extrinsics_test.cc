@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "calibrato/calibration/camera_imu_calibration.h"
 #include "calibrato/calibration/planned_frame.h"
@@ -66,6 +70,48 @@ TEST(ExpectExtrinsics, AgreesWithTheSolversInformation) {
       EXPECT_NEAR(std::sqrt(expected->covariance(k, k)), std::sqrt(solver.covariance(k, k)),
                   0.04 * std::sqrt(solver.covariance(k, k)))
           << k << " at " << imu_rate_hz << " Hz";
+    }
+  }
+}
+
+// The same as information, with the camera's parameters known and unknown; against the solver's.
+TEST(ExtrinsicInformationOf, AgreesWithTheSolversInformation) {
+  const SyntheticCameraImu truth = Truth();
+  for (const bool camera_is_known : {true, false}) {
+    Rng rng(3);
+    CameraImuProblem problem = truth.Problem(rng);
+    problem.corner_noise_px = truth.corner_noise_px;
+    if (!camera_is_known) problem.cameras[0].intrinsics = IntrinsicsKnowledge::kUnknown;
+    const CameraImuState state = StateAlong(
+        [&](double t) { return truth.PoseAt(t); }, truth.epoch, truth.duration_s - 0.005, 0.05, 6,
+        truth.gravity_g, {{truth.model, truth.T_c_i[0], truth.time_offset_s[0]}}, 1);
+    const CameraImuInformation solver = InformationAt(problem, state);
+    const Eigen::MatrixXd information =
+        ExtrinsicInformationOf(RigOf(truth), MotionOf(truth, 200.0), camera_is_known);
+    const int n = camera_is_known ? 0 : truth.model.num_parameters();
+    ASSERT_EQ(information.rows(), 9 + n);
+    const Eigen::MatrixXd covariance =
+        information.ldlt().solve(Eigen::MatrixXd::Identity(9 + n, 9 + n));
+    const auto sigma_of = [&](const std::string& name) {
+      const auto found = std::find(solver.names.begin(), solver.names.end(), name);
+      const auto place = found - solver.names.begin();
+      return std::sqrt(solver.covariance(place, place));
+    };
+    const std::vector<std::string> names = {"cam0.rot_x",      "cam0.rot_y", "cam0.rot_z",
+                                            "cam0.pos_x",      "cam0.pos_y", "cam0.pos_z",
+                                            "cam0.time_offset"};
+    for (int k = 0; k < 7; ++k) {
+      const double sigma = sigma_of(names[static_cast<size_t>(k)]);
+      EXPECT_NEAR(std::sqrt(covariance(k, k)), sigma, 0.04 * sigma) << k << camera_is_known;
+    }
+    // Gravity's two angles about axes of another choice: the sum of squares is of neither.
+    EXPECT_NEAR(std::sqrt(covariance(7, 7) + covariance(8, 8)),
+                std::hypot(sigma_of("gravity_1"), sigma_of("gravity_2")),
+                0.04 * std::hypot(sigma_of("gravity_1"), sigma_of("gravity_2")));
+    const auto parameters = CameraModel::ParameterNames(truth.model.name());
+    for (int k = 0; k < n; ++k) {
+      const double sigma = sigma_of("cam0." + parameters[static_cast<size_t>(k)]);
+      EXPECT_NEAR(std::sqrt(covariance(9 + k, 9 + k)), sigma, 0.04 * sigma) << k;
     }
   }
 }

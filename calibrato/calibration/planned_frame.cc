@@ -49,6 +49,15 @@ std::optional<Matrix6d> PoseInformationOfFrame(const CameraModel& model, const B
   return Matrix6d(P.transpose() * P);
 }
 
+std::optional<Eigen::MatrixXd> JointInformationOfFrame(const CameraModel& model,
+                                                       const BoardView& points,
+                                                       const Rigid3& T_c_g) {
+  ViewRows view;
+  if (!LineariseView(model, points, T_c_g, {}, &view)) return std::nullopt;
+  const auto rows = view.rows.leftCols(6 + model.num_parameters());
+  return Eigen::MatrixXd(rows.transpose() * rows);
+}
+
 double MarginInImage(const CameraModel& model, Resolution resolution, const BoardView& points,
                      const Rigid3& T_c_g) {
   double margin = std::numeric_limits<double>::infinity();

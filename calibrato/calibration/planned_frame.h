@@ -31,6 +31,12 @@ namespace calibrato {
 [[nodiscard]] std::optional<Eigen::Matrix<double, 6, 6>> PoseInformationOfFrame(
     const CameraModel& model, const BoardView& points, const Rigid3& T_c_g);
 
+/// What a frame would say about its pose and the camera's parameters together, [P J]'[P J] in this
+/// order, for corner noise of 1 px. Nothing where a point does not project.
+[[nodiscard]] std::optional<Eigen::MatrixXd> JointInformationOfFrame(const CameraModel& model,
+                                                                     const BoardView& points,
+                                                                     const Rigid3& T_c_g);
+
 /// How far inside the image its outermost point is [px], as FramesThatCount measures: 0 at the
 /// centres of the outermost pixels, negative outside. Minus infinity where a point does not
 /// project.

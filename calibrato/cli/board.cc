@@ -7,6 +7,7 @@
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/cli/command.h"
+#include "calibrato/cli/number_range.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/rendering/draw_board.h"
 
@@ -53,7 +54,7 @@ Action SetUpBoard(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--out", options->out, "What to write: board.pdf, board.svg or board.png")
       ->required();
   app.add_option("--dpi", options->drawing.dpi, "Of a PNG: pixels an inch")
-      ->check(CLI::Range(36.0, 2400.0))
+      ->check(NumberBetween(36.0, 2400.0))
       ->capture_default_str();
   return [options, &global] { return RunBoard(*options, global); };
 }

@@ -13,6 +13,7 @@
 #include "calibrato/calibration/camera_imu_calibration.h"
 #include "calibrato/cli/board_views.h"
 #include "calibrato/cli/command.h"
+#include "calibrato/cli/number_range.h"
 #include "calibrato/cli/output.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/diagnosis/camera_imu_diagnosis.h"
@@ -402,7 +403,7 @@ Action SetUpCalibrateCameraImu(CLI::App& app, const GlobalOptions& global) {
       ->check(CLI::Range(1, 10000))
       ->capture_default_str();
   app.add_option("--gravity", options->gravity, "Its size where the recording was made [m/s^2]")
-      ->check(CLI::Range(1.0, 30.0))
+      ->check(NumberBetween(1.0, 30.0))
       ->capture_default_str();
   app.add_option("--from", options->window.from_s, "Begin so late in the recording [s]");
   app.add_option("--to", options->window.to_s, "End so late in the recording [s]");

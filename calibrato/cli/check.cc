@@ -12,6 +12,7 @@
 #include "calibrato/base/parallel.h"
 #include "calibrato/cli/board_views.h"
 #include "calibrato/cli/command.h"
+#include "calibrato/cli/number_range.h"
 #include "calibrato/cli/output.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/diagnosis/check_document.h"
@@ -287,7 +288,7 @@ Action SetUpCheck(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--resolution", options->resolution,
                  "Image size of corner lists, WIDTHxHEIGHT, if no file tells it");
   app.add_option("--gravity", options->gravity, "Its size where the recording was made [m/s^2]")
-      ->check(CLI::Range(1.0, 30.0))
+      ->check(NumberBetween(1.0, 30.0))
       ->capture_default_str();
   app.add_option("--from", options->window.from_s, "Begin so late in the recording [s]");
   app.add_option("--to", options->window.to_s, "End so late in the recording [s]");

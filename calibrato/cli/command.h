@@ -45,6 +45,9 @@ Action SetUpEvaluateFigure4(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateFigure5(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateFigure7(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluatePareto(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateAblation(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluatePlanners(CLI::App& app, const GlobalOptions& global);
+Action SetUpEvaluateRows(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateRivals(CLI::App& app, const GlobalOptions& global);
 Action SetUpEvaluateAll(CLI::App& app, const GlobalOptions& global);
 Action SetUpExport(CLI::App& app, const GlobalOptions& global);
@@ -52,7 +55,9 @@ Action SetUpCheck(CLI::App& app, const GlobalOptions& global);
 Action SetUpConvert(CLI::App& app, const GlobalOptions& global);
 Action SetUpNoise(CLI::App& app, const GlobalOptions& global);
 Action SetUpDiff(CLI::App& app, const GlobalOptions& global);
+Action SetUpMerge(CLI::App& app, const GlobalOptions& global);
 Action SetUpPlan(CLI::App& app, const GlobalOptions& global);
+Action SetUpGuide(CLI::App& app, const GlobalOptions& global);
 Action SetUpReport(CLI::App& app, const GlobalOptions& global);
 
 /// Set once SIGINT or SIGTERM came; only commands that save their state look at it. See main.cc.

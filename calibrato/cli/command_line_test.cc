@@ -613,6 +613,84 @@ TEST(Learn, PresetBestRefusesOptionsOfThePaper) {
   }
 }
 
+TEST(Learn, PresetPaperRefusesOptionsOfTheBest) {
+  const ScratchFolder scratch;
+  for (const auto& [option, value] : std::vector<std::pair<std::string, std::string>>{
+           {"--believed", "3"}, {"--max-path", "2"}, {"--max-time", "10"}}) {
+    ExpectRefused(scratch, {"learn", "intrinsic", "--preset", "paper", option, value},
+                  {"preset paper has no " + option, "preset best"});
+  }
+}
+
+// NaN passes no check.
+TEST(Learn, RefusesNumbersThatAreNone) {
+  const ScratchFolder scratch;
+  for (const char* value : {"nan", "-1", "inf"}) {
+    ExpectRefused(scratch,
+                  {"learn", "extrinsic", "--preset", "paper", "--information-weight", value},
+                  {"--information-weight", value});
+    ExpectRefused(scratch, {"learn", "extrinsic", "--max-path", value}, {"--max-path", value});
+    ExpectRefused(scratch, {"board", "--target", "none.yaml", "--dpi", value}, {"--dpi", value});
+  }
+}
+
+// A policy's motion, its task in the header.
+std::string PolicyFolder(const ScratchFolder& scratch, const std::string& task) {
+  (void)scratch.Write("policy/motion.yaml", MotionYaml(0.1));
+  (void)scratch.Write("policy/policy.yaml",
+                      "format_version: 1\npreset: best\ntask: " + task + "\n");
+  return scratch.Path("policy");
+}
+
+TEST(Plan, RefusesOptionsThatHaveNoUse) {
+  const SimulationInput input;
+  const std::string policy = PolicyFolder(input.scratch, "extrinsic");
+  const Arguments by_policy = {"plan", "--rig", input.rig, "--policy", policy};
+  ExpectRefused(input.scratch, With(by_policy, {"--task", "intrinsic"}),
+                {"policy of another task", "learned for the extrinsic task", "--task extrinsic"});
+  for (const auto& [option, value] :
+       std::vector<std::pair<std::string, std::string>>{{"--rigs", "paper"},
+                                                        {"--believed", "3"},
+                                                        {"--evaluations", "50"},
+                                                        {"--max-path", "2"},
+                                                        {"--max-time", "9"}}) {
+    ExpectRefused(input.scratch, With(by_policy, {option, value}), {option + " has no use here"});
+  }
+  ExpectRefused(input.scratch, With(by_policy, {"--executed", "1"}), {"nothing is left to plan"});
+  const Arguments by_method = {"plan", "--rig", input.rig, "--method", "fisher"};
+  ExpectRefused(input.scratch, With(by_method, {"--believed", "3"}),
+                {"--believed has no use here", "--rigs"});
+  ExpectRefused(input.scratch, With(by_method, {"--executed", "1"}),
+                {"--executed has no use here", "--policy"});
+}
+
+// The loop that was executed stays, the others are designed anew within the motion's own path.
+TEST(Plan, PlansTheRestOfAPolicysMotionAnew) {
+  const SimulationInput input;
+  const std::string first = input.scratch.Path("policy/motion.yaml");
+  (void)input.scratch.MakeFolder("policy");
+  const Ended planned =
+      RunProgram({"plan", "--rig", input.rig, "--method", "random-shooting", "--task", "extrinsic",
+                  "--evaluations", "30", "--json", "--out", first});
+  ASSERT_EQ(planned.exit_code, 0) << planned.err;
+  const std::string again = input.scratch.Path("again.yaml");
+  const Ended ended =
+      RunProgram({"plan", "--rig", input.rig, "--policy", input.scratch.Path("policy"), "--task",
+                  "extrinsic", "--executed", "1", "--evaluations", "60", "--json", "--out", again});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  const auto loops = [](const std::string& path) { return ReadYaml(path).At("loops").elements(); };
+  ASSERT_EQ(loops(again).size(), loops(first).size());
+  EXPECT_EQ(ToJsonLine(loops(again)[0].At("coefficients")),
+            ToJsonLine(loops(first)[0].At("coefficients")));
+  EXPECT_NE(ToJsonLine(loops(again)[1].At("coefficients")),
+            ToJsonLine(loops(first)[1].At("coefficients")));
+  const Value before = ParseJson(planned.out, "stdout");
+  const Value after = ParseJson(ended.out, "stdout");
+  EXPECT_LE(after.At("path_length_m").AsDouble(), before.At("path_length_m").AsDouble() * 1.001);
+  EXPECT_LT(after.At("expected").At("rotation_sigma_rad").AsDouble(),
+            before.At("expected").At("rotation_sigma_rad").AsDouble());
+}
+
 TEST(Plan, RefusesWhatItCannotPlan) {
   const SimulationInput input;
   const Arguments plan = {"plan", "--rig", input.rig};
@@ -682,17 +760,24 @@ TEST(CommandLine, HelpOfEveryCommandNamesItsOptions) {
       {{"simulate"},
        {"--rig", "--motion", "--carrier", "--timing", "--fidelity", "--effects", "--scale-to-fit",
         "--video", "--out"}},
-      {{"export"}, {"motion", "--format", "--rig", "--timing", "--scale-to-fit", "--out"}},
+      {{"export"},
+       {"what", "--format", "--rig", "--timing", "--scale-to-fit", "--camera-rate", "--out"}},
       {{"learn"},
        {"task", "--preset", "--carrier", "--fidelity", "--rigs", "--reward", "--criterion",
         "--information-weight", "--mistakes", "--planner", "--evaluations", "--round", "--episodes",
         "--live", "--resume", "--out"}},
       {{"evaluate"},
-       {"table1", "table6", "figure4", "figure5", "figure7", "pareto", "rivals", "all"}},
+       {"table1", "table6", "figure4", "figure5", "figure7", "pareto", "rivals", "rows", "planners",
+        "ablation", "all"}},
+      {{"evaluate", "planners"}, {"--budgets", "--repetitions", "--believed", "--max-path"}},
+      {{"evaluate", "ablation"}, {"--episodes", "--variants"}},
+      {{"plan"}, {"--rig", "--policy", "--method", "--task", "--executed", "--evaluations"}},
       {{"evaluate", "table1"},
        {"--task", "--policy", "--motion", "--trajectory", "--carrier", "--fidelity", "--rigs",
         "--rig-file", "--num-rigs", "--quick", "--out"}},
       {{"evaluate", "rivals"}, {"--outside", "--policy", "--out"}},
+      {{"diff"}, {"first", "second", "--level", "--out"}},
+      {{"merge"}, {"folders", "--out"}},
       {{"report"}, {"folder"}}};
   for (const auto& [command, names] : commands) {
     SCOPED_TRACE(InWords(command));

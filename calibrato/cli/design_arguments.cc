@@ -2,7 +2,9 @@
 
 #include <utility>
 
+#include "calibrato/cli/number_range.h"
 #include "calibrato/mdp/design_setting.h"
+#include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
 void AddDesignArguments(CLI::App& app, DesignArguments* arguments) {
@@ -12,10 +14,10 @@ void AddDesignArguments(CLI::App& app, DesignArguments* arguments) {
       ->capture_default_str();
   app.add_option("--max-path", arguments->max_path_m,
                  "Path of the motion [m] (that of the handcrafted one)")
-      ->check(CLI::PositiveNumber);
+      ->check(FinitePositive());
   app.add_option("--max-time", arguments->max_time_s,
                  "Duration of the motion [s] (that of the handcrafted one)")
-      ->check(CLI::PositiveNumber);
+      ->check(FinitePositive());
 }
 
 MotionDesignProblem MakeDesignProblem(Task task, Carrier carrier, std::vector<Rig> rigs,
@@ -24,6 +26,7 @@ MotionDesignProblem MakeDesignProblem(Task task, Carrier carrier, std::vector<Ri
   problem.task = task;
   problem.rigs = std::move(rigs);
   problem.num_loops = NumLoops(task);
+  problem.base_pose = BasePoseBeforeBoard(problem.rigs.front());
   Motion handcrafted = HandcraftedMotion(task);
   handcrafted.carrier = carrier;
   handcrafted.base_pose = problem.base_pose;

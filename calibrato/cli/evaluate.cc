@@ -30,16 +30,7 @@ ExitCode RunPart(MakeEvaluationPart make, const NumRigs& num_rigs, const Evaluat
   OutputFolder out(options.out);
   stopwatch.Start("evaluation_s");
   const EvaluationPart part = make(options, global, num_rigs);
-  for (const auto& [name, seconds] : part.seconds) stopwatch.Add(name, seconds);
-  for (const auto& [name, content] : part.files) out.Add(name, content);
-  out.Add(KindOf(part) + ".json", ToJson(part.result));
-  CommitResult(part.title, part.result, Plots(part), &stopwatch, &out);
-  if (global.json) {
-    std::fputs(ToJson(part.result).c_str(), stdout);
-  } else if (!global.quiet) {
-    std::printf("%sreport: %s/report.html\n", part.text.c_str(), options.out.c_str());
-  }
-  return kDone;
+  return CommitPart(part, options.out, global, &stopwatch, &out);
 }
 
 Action SetUpPart(MakeEvaluationPart make, const NumRigs& num_rigs, CLI::App& app,
@@ -138,6 +129,10 @@ Action SetUpEvaluateFigure7(CLI::App& app, const GlobalOptions& global) {
 
 Action SetUpEvaluatePareto(CLI::App& app, const GlobalOptions& global) {
   return SetUpPart(MakePareto, {200, 20, 20}, app, global);
+}
+
+Action SetUpEvaluateRows(CLI::App& app, const GlobalOptions& global) {
+  return SetUpPart(MakeRows, {500, 50, 20}, app, global);
 }
 
 Action SetUpEvaluateRivals(CLI::App& app, const GlobalOptions& global) {

@@ -12,6 +12,7 @@
 #include "calibrato/evaluation/figure4.h"
 #include "calibrato/evaluation/figure5.h"
 #include "calibrato/evaluation/figure7.h"
+#include "calibrato/evaluation/four_rows.h"
 #include "calibrato/evaluation/outside_estimator.h"
 #include "calibrato/evaluation/pareto.h"
 #include "calibrato/evaluation/rivals.h"
@@ -172,6 +173,69 @@ EvaluationPart MakePareto(const EvaluateOptions& options, const GlobalOptions& g
   std::vector<Column> columns = WithFirst({"num_loops", "loops", "", ""}, kErrorColumns);
   columns = WithFirst({"scale", "scale", "", ""}, std::move(columns));
   return PartWithCharts("Error against budget", ToValue(tasks), columns, ChartsOf(tasks));
+}
+
+EvaluationPart MakeRows(const EvaluateOptions& options, const GlobalOptions& global,
+                        const NumRigs& num_rigs) {
+  const std::vector<MotionUnderTrial> motions = ReadMotionsUnderTrial(options);
+  std::vector<FourRows> tasks;
+  std::map<std::string, double> seconds;
+  for (const Task task : TasksOf(options)) {
+    tasks.push_back(EvaluateFourRows(SettingOf(options, global, task, num_rigs), motions));
+    for (const auto& [row, cpu_s] : tasks.back().seconds) {
+      seconds[TaskName(task) + ", " + row + ", cpu_s"] = cpu_s;
+    }
+  }
+  std::vector<Column> columns = kErrorColumns;
+  const std::vector<Column> ratios = {
+      {"ratio_to_handcrafted", "over handcrafted", "", "ratio_to_handcrafted_ci95"},
+      {"ratio_to_robust", "over robust", "", "ratio_to_robust_ci95"},
+      {"ratio_to_oracle", "over the oracle's", "", "ratio_to_oracle_ci95"}};
+  columns.insert(columns.begin() + 3, ratios.begin(), ratios.end());
+  const std::vector<Column> budgets = {
+      {"episodes", "episodes before", "", ""},
+      {"design_information_evaluations", "evaluations before", "", ""},
+      {"information_evaluations_of_rig", "evaluations a rig", "", ""}};
+  columns.insert(columns.end() - 1, budgets.begin(), budgets.end());
+  EvaluationPart part =
+      PartWithCharts("Why learn at all", ToValue(tasks), columns, ChartsOf(tasks));
+  part.seconds = std::move(seconds);
+  return part;
+}
+
+EvaluationPart PartOfAblation(const std::vector<Ablation>& tasks) {
+  std::vector<Column> columns = kErrorColumns;
+  const std::vector<Column> ratios = {
+      {"ratio_to_baseline", "over the baseline's", "", "ratio_to_baseline_ci95"},
+      {"ratio_to_handcrafted", "over handcrafted", "", "ratio_to_handcrafted_ci95"},
+      {"probability_as_baseline", "by chance", "", ""}};
+  columns.insert(columns.begin() + 3, ratios.begin(), ratios.end());
+  columns.insert(columns.end() - 1, {"episodes", "episodes", "", ""});
+  return PartWithCharts("What each difference costs", ToValue(tasks), columns, ChartsOf(tasks));
+}
+
+EvaluationPart PartOfPlanners(const std::vector<PlannerComparison>& tasks) {
+  std::vector<Column> columns = kErrorColumns;
+  const std::vector<Column> of_planners = {
+      {"information_evaluations", "evaluations", "", ""},
+      {"expected_loss", "expected loss less handcrafted's", "", "expected_loss_range"},
+      {"ratio_to_handcrafted", "over handcrafted", "", "ratio_to_handcrafted_ci95"}};
+  columns.insert(columns.begin() + 1, of_planners.begin(), of_planners.end());
+  return PartWithCharts("Planners compared", ToValue(tasks), columns, ChartsOf(tasks));
+}
+
+ExitCode CommitPart(const EvaluationPart& part, const std::string& folder,
+                    const GlobalOptions& global, Stopwatch* stopwatch, OutputFolder* out) {
+  for (const auto& [name, seconds] : part.seconds) stopwatch->Add(name, seconds);
+  for (const auto& [name, content] : part.files) out->Add(name, content);
+  out->Add(part.result.At("kind").AsString() + ".json", ToJson(part.result));
+  CommitResult(part.title, part.result, Value::Object().Set("plots", part.plots), stopwatch, out);
+  if (global.json) {
+    std::fputs(ToJson(part.result).c_str(), stdout);
+  } else if (!global.quiet) {
+    std::printf("%sreport: %s/report.html\n", part.text.c_str(), folder.c_str());
+  }
+  return kDone;
 }
 
 EvaluationPart MakeRivals(const EvaluateOptions& options, const GlobalOptions& global,

@@ -2,10 +2,15 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
+#include "calibrato/base/files.h"
 #include "calibrato/base/value.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/evaluate_options.h"
+#include "calibrato/cli/output.h"
+#include "calibrato/evaluation/ablation.h"
+#include "calibrato/evaluation/planner_comparison.h"
 
 namespace calibrato {
 
@@ -35,7 +40,16 @@ using MakeEvaluationPart = EvaluationPart (*)(const EvaluateOptions& options,
                                          const GlobalOptions& global, const NumRigs& num_rigs);
 [[nodiscard]] EvaluationPart MakePareto(const EvaluateOptions& options, const GlobalOptions& global,
                                         const NumRigs& num_rigs);
+[[nodiscard]] EvaluationPart PartOfAblation(const std::vector<Ablation>& tasks);
+[[nodiscard]] EvaluationPart PartOfPlanners(const std::vector<PlannerComparison>& tasks);
+[[nodiscard]] EvaluationPart MakeRows(const EvaluateOptions& options, const GlobalOptions& global,
+                                      const NumRigs& num_rigs);
 [[nodiscard]] EvaluationPart MakeRivals(const EvaluateOptions& options, const GlobalOptions& global,
                                         const NumRigs& num_rigs);
+
+/// Writes a part and tells of it.
+[[nodiscard]] ExitCode CommitPart(const EvaluationPart& part, const std::string& folder,
+                                  const GlobalOptions& global, Stopwatch* stopwatch,
+                                  OutputFolder* out);
 
 }  // namespace calibrato

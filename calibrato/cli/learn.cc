@@ -6,14 +6,18 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/progress.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/learn_best.h"
 #include "calibrato/cli/learn_document.h"
 #include "calibrato/cli/learn_environment.h"
 #include "calibrato/cli/live_page.h"
+#include "calibrato/cli/number_range.h"
 #include "calibrato/cli/output.h"
+#include "calibrato/learning/mpi_team.h"
 #include "calibrato/learning/trainer.h"
 #include "calibrato/report/report.h"
+#include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
 namespace {
@@ -96,7 +100,7 @@ ExitCode Tell(const LearnResult& learned, const Value& result, const Rig& scene,
               OutputFolder* out) {
   Value plots = Value::Object();
   plots.Set("training", TrainingLines(options.out));
-  const Value drawing = MotionDrawing(learned.motion, scene);
+  const Value drawing = LearnedMotionDrawing(learned.motion, scene);
   if (!drawing.IsNull()) plots.Set("motion", drawing);
   CommitResult("Learning", result, plots, stopwatch, out);
   if (global.json) {
@@ -113,6 +117,15 @@ ExitCode Tell(const LearnResult& learned, const Value& result, const Rig& scene,
   return kNotTrusted;
 }
 
+// What was asked for that only the preset `best` has; empty if nothing.
+std::string OptionOfBest(const Options& options) {
+  const DesignArguments standard;
+  if (options.design.num_believed != standard.num_believed) return "--believed";
+  if (options.design.max_path_m != standard.max_path_m) return "--max-path";
+  if (options.design.max_time_s != standard.max_time_s) return "--max-time";
+  return "";
+}
+
 // What was asked for that only the preset `paper` has; empty if nothing.
 std::string OptionOfPaper(const Options& options) {
   const Options standard;
@@ -127,7 +140,19 @@ std::string OptionOfPaper(const Options& options) {
   return "";
 }
 
-ExitCode RunLearnBest(const Options& options, const GlobalOptions& global) {
+// How a process ends that is not the first: that one tells of it.
+ExitCode EndedSilently(const LearnResult& learned) {
+  switch (learned.termination) {
+    case LearnTermination::kDone:
+      return kDone;
+    case LearnTermination::kInterrupted:
+      return kInterrupted;
+    default:
+      return kNotTrusted;
+  }
+}
+
+ExitCode RunLearnBest(const Options& options, const GlobalOptions& global, Team& team) {
   const std::string other = OptionOfPaper(options);
   if (!other.empty()) {
     throw InputError({"preset best has no " + other, "", "that is an option of the paper's learner",
@@ -142,9 +167,18 @@ ExitCode RunLearnBest(const Options& options, const GlobalOptions& global) {
   arguments.seed = global.seed;
   arguments.resume = options.resume;
   arguments.out = options.out;
+  arguments.team = &team;
+  if (team.is_first() && !global.quiet && options.episodes > 0 &&
+      NumEpisodesOfBest(options.episodes) != options.episodes) {
+    std::fprintf(stderr, "note: preset best plays whole rounds of %d: %d of the %d episodes\n",
+                 EpisodesPerRoundOfBest(options.episodes), NumEpisodesOfBest(options.episodes),
+                 options.episodes);
+  }
   const Rig scene = MakeEnvironment(options.setting).scene;
   stopwatch.Start("training_s");
   const LearnResult learned = LearnBest(arguments);
+  if (!team.is_first()) return EndedSilently(learned);
+  stopwatch.Add("divided_s", learned.divided_s);
   if (learned.termination == LearnTermination::kInterrupted) {
     std::fprintf(stderr, "%s\n", learned.termination_text.c_str());
     return kInterrupted;
@@ -168,25 +202,42 @@ ExitCode RunLearnBest(const Options& options, const GlobalOptions& global) {
 
 ExitCode RunLearn(const Options& options, const GlobalOptions& global) {
   Stopwatch stopwatch;
-  if (options.preset == "best") return RunLearnBest(options, global);
+  const std::unique_ptr<Team> team = MakeMpiTeam();
+  if (!team->is_first()) Progress::Silence();
+  if (options.preset == "best") return RunLearnBest(options, global, *team);
   if (options.preset != "paper") {
     throw InputError({"unknown preset '" + options.preset + "'", "", "there are best and paper",
                       "use --preset best"});
+  }
+  const std::string other = OptionOfBest(options);
+  if (!other.empty()) {
+    throw InputError({"preset paper has no " + other, "", "that is an option of preset best",
+                      "leave out " + other + ", or --preset paper"});
   }
   OutputFolder out(options.out);
   LearnOptions learn = MakeLearnOptions(options, global);
   CheckOptions(learn);
   const LearnEnvironment made = MakeEnvironment(options.setting);
   learn.environment = made.name;
+  learn.base_pose = BasePoseBeforeBoard(made.scene);
+  if (team->is_first() && team->size() > learn.round && !global.quiet) {
+    std::fprintf(stderr,
+                 "note: %d processes share rounds of %d: add --round %d, or some will have nothing "
+                 "to do\n",
+                 team->size(), learn.round, team->size());
+  }
   std::optional<LivePage> live;
-  if (options.live_port >= 0) {
+  if (options.live_port >= 0 && team->is_first()) {
     live.emplace(options.live_port, LiveContent(options));
     if (!global.quiet) std::fprintf(stderr, "live: %s\n", live->address().c_str());
   }
 
   NoteInterruptions();
   stopwatch.Start("training_s");
-  const LearnResult learned = Learn(learn, *made.environment, options.out, &InterruptRequested());
+  const LearnResult learned =
+      Learn(learn, *made.environment, options.out, &InterruptRequested(), team.get());
+  if (!team->is_first()) return EndedSilently(learned);
+  stopwatch.Add("divided_s", learned.divided_s);
   if (learned.termination == LearnTermination::kInterrupted) {
     std::fprintf(stderr, "%s\n", learned.termination_text.c_str());
     return kInterrupted;
@@ -214,7 +265,7 @@ Action SetUpLearn(CLI::App& app, const GlobalOptions& global) {
       ->capture_default_str();
   app.add_option("--information-weight", setting.information_weight,
                  "Of the information in the reward, per nat (intrinsic 0, else 1)")
-      ->check(CLI::Range(0.0, 1e9));
+      ->check(NumberBetween(0.0, 1e9));
   app.add_option("--mistakes", setting.mistakes,
                  "Of the original implementation, to measure what they cost: names with commas "
                  "between, or all (docs/differences.md)");
@@ -228,7 +279,8 @@ Action SetUpLearn(CLI::App& app, const GlobalOptions& global) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--episodes", options->episodes,
-                 "Of all stages (best: 96; paper: 1000, extrinsic 1650, 1000 of them without "
+                 "Of all stages (best: 96, in whole rounds of 8; paper: 1000, extrinsic 1650, 1000 "
+                 "of them without "
                  "calibrations)")
       ->check(CLI::Range(2, 1000000));
   app.add_option("--live", options->live_port,

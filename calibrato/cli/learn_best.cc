@@ -1,5 +1,6 @@
 #include "calibrato/cli/learn_best.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <utility>
@@ -16,6 +17,15 @@ namespace {
 constexpr int kNumEpisodes = 96;
 
 }  // namespace
+
+int EpisodesPerRoundOfBest(int num_episodes) {
+  return std::min(DesignLearnOptions().episodes_per_round, num_episodes);
+}
+
+int NumEpisodesOfBest(int num_episodes) {
+  const int round = EpisodesPerRoundOfBest(num_episodes);
+  return num_episodes / round * round;
+}
 
 LearnResult LearnBest(const LearnBestArguments& arguments) {
   const LearnSetting& setting = arguments.setting;
@@ -42,12 +52,9 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
   options.carrier = CarrierFromName(setting.carrier);
   options.problem = MakeDesignProblem(TaskFromName(setting.task), options.carrier,
                                       std::move(believed), arguments.design);
-  if (arguments.num_episodes == 0) {
-    options.num_episodes = kNumEpisodes;
-  } else {
-    options.num_episodes = arguments.num_episodes;
-    options.episodes_per_round = std::min(options.episodes_per_round, arguments.num_episodes);
-  }
+  const int num_wanted = arguments.num_episodes == 0 ? kNumEpisodes : arguments.num_episodes;
+  options.num_episodes = NumEpisodesOfBest(num_wanted);
+  options.episodes_per_round = EpisodesPerRoundOfBest(num_wanted);
   options.seed = arguments.seed;
   options.resume = arguments.resume;
   options.environment = MakeEnvironment(setting).name;
@@ -68,7 +75,7 @@ LearnResult LearnBest(const LearnBestArguments& arguments) {
     return JudgeMotion(problem.task, rig, *moved, fidelity, problem.criterion, noise);
   };
   NoteInterruptions();
-  return LearnByDesign(options, judge, arguments.out, &InterruptRequested());
+  return LearnByDesign(options, judge, arguments.out, &InterruptRequested(), arguments.team);
 }
 
 }  // namespace calibrato

@@ -30,6 +30,47 @@ bool IsReprojection(const std::string& reward) {
                     "use --reward error"});
 }
 
+[[noreturn]] void FailTerm(const std::string& term) {
+  throw InputError(
+      {"no such term of the reward: " + term, "", "the task does not have it", "leave it out"});
+}
+
+void LeaveOut(const std::vector<std::string>& terms, IntrinsicRewardWeights* weights) {
+  for (const std::string& term : terms) {
+    if (term == "coverage") {
+      weights->coverage = 0.0;
+    } else if (term == "relative_error") {
+      weights->relative_error = 0.0;
+    } else if (term == "path_length") {
+      weights->path_length = 0.0;
+    } else if (term == "accuracy_bonus") {
+      weights->accuracy_bonus = 0.0;
+    } else if (term == "refusal") {
+      weights->refusal = 0.0;
+    } else {
+      FailTerm(term);
+    }
+  }
+}
+
+void LeaveOut(const std::vector<std::string>& terms, ExtrinsicRewardWeights* weights) {
+  for (const std::string& term : terms) {
+    if (term == "empirical") {
+      weights->empirical = 0.0;
+    } else if (term == "information") {
+      weights->information = 0.0;
+    } else if (term == "relative_error") {
+      weights->relative_error = 0.0;
+    } else if (term == "path_length") {
+      weights->path_length = 0.0;
+    } else if (term == "refusal") {
+      weights->refusal = 0.0;
+    } else {
+      FailTerm(term);
+    }
+  }
+}
+
 // What all tasks have.
 template <typename Environment, typename Task>
 std::unique_ptr<Environment> Made(Task task, const LearnSetting& setting,
@@ -42,6 +83,7 @@ std::unique_ptr<Environment> Made(Task task, const LearnSetting& setting,
     task.rigs = RigDistributionFromName(setting.rigs);
   }
   task.criterion = CriterionFromName(setting.criterion);
+  if (setting.num_loops > 0) task.num_loops = setting.num_loops;
   return std::make_unique<Environment>(std::move(task));
 }
 
@@ -55,6 +97,7 @@ std::unique_ptr<Environment> MakeIntrinsic(const LearnSetting& setting,
     task.weights.accuracy_bonus = 0.0;
     task.weights.reprojection = kReprojectionWeight;
   }
+  LeaveOut(setting.without, &task.weights);
   return Made<IntrinsicEnvironment>(std::move(task), setting, rig);
 }
 
@@ -67,11 +110,13 @@ std::unique_ptr<Environment> MakeExtrinsic(const LearnSetting& setting,
     task.weights.relative_error = 0.0;
     task.weights.reprojection = kReprojectionWeight;
   }
+  LeaveOut(setting.without, &task.weights);
   return Made<ExtrinsicEnvironment>(std::move(task), setting, rig);
 }
 
 std::unique_ptr<Environment> MakeJoint(const LearnSetting& setting, const std::optional<Rig>& rig) {
   JointTask task;
+  if (!setting.without.empty()) FailTerm(setting.without.front());
   for (const Mistake mistake : MistakesFromNames(setting.mistakes)) {
     if (mistake >= Mistake::kFrozenSwarm) continue;  // Those of the learner.
     throw InputError({"no such mistake in the joint task: " + MistakeName(mistake), "",
@@ -118,6 +163,8 @@ LearnEnvironment MakeEnvironment(const LearnSetting& setting) {
   if (setting.information_weight >= 0.0) {
     made.name += ", information weight " + FormatNumber(setting.information_weight);
   }
+  for (const std::string& term : setting.without) made.name += ", without " + term;
+  if (setting.num_loops > 0) made.name += ", " + std::to_string(setting.num_loops) + " loops";
   made.scene = rig.value_or(PaperRig());
   return made;
 }

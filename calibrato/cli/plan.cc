@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,9 +13,12 @@
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/design_arguments.h"
 #include "calibrato/cli/parse.h"
+#include "calibrato/evaluation/closed_loop.h"
 #include "calibrato/learning/plan_by_method.h"
 #include "calibrato/mdp/design_setting.h"
+#include "calibrato/mdp/motion_design.h"
 #include "calibrato/mdp/motion_information.h"
+#include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
 namespace {
@@ -22,11 +27,12 @@ struct Options {
   std::string rig;
   std::string policy;
   std::string method;
-  std::string task = "intrinsic";
+  std::string task;  // Empty: the policy's, or intrinsic.
   std::string carrier = "free";
   std::string rigs;
   DesignArguments design;
-  int evaluations = 4000;
+  int evaluations = 0;  // 0: kEvaluations.
+  int executed = 0;
   std::string out;
 };
 
@@ -67,14 +73,63 @@ Motion Twice(const Motion& motion) {
   return twice;
 }
 
-Motion PolicyMotion(const std::string& folder) {
+constexpr int kEvaluations = 4000;
+// For what is left of a motion, from how it went on before.
+constexpr int kEvaluationsOfRest = 400;
+
+struct PlannedBefore {
+  Motion motion;
+  std::optional<std::string> task;  // That it was learned for.
+};
+
+PlannedBefore ReadPolicyMotion(const std::string& folder) {
   namespace fs = std::filesystem;
-  for (const fs::path& path :
-       {fs::path(folder) / "motion.yaml", fs::path(folder) / "policy" / "motion.yaml"}) {
-    if (fs::exists(path)) return ReadMotion(path.string());
+  for (const fs::path& path : {fs::path(folder), fs::path(folder) / "policy"}) {
+    if (!fs::exists(path / "motion.yaml")) continue;
+    PlannedBefore before{ReadMotion((path / "motion.yaml").string()), {}};
+    if (fs::exists(path / "policy.yaml")) {
+      const Value header = ReadYaml((path / "policy.yaml").string());
+      if (const Value* task = header.Find("task")) before.task = task->AsString();
+    }
+    return before;
   }
   throw InputError({"no policy", folder, "neither motion.yaml nor policy/motion.yaml is there",
                     "give the folder that calibrato learn wrote, once it has finished"});
+}
+
+// What was asked for that has no use beside --policy; empty if nothing.
+std::string OptionOfMethods(const Options& options) {
+  const DesignArguments standard;
+  if (!options.rigs.empty()) return "--rigs";
+  if (options.design.num_believed != standard.num_believed) return "--believed";
+  if (options.executed > 0) return "";  // The rest is designed.
+  if (options.evaluations != 0) return "--evaluations";
+  if (options.design.max_path_m != standard.max_path_m) return "--max-path";
+  if (options.design.max_time_s != standard.max_time_s) return "--max-time";
+  return "";
+}
+
+void CheckUse(const Options& options) {
+  if (options.policy.empty() == options.method.empty()) {
+    throw InputError(
+        {"plan by what?", "", "give either --method or --policy", "for example --method fisher"});
+  }
+  const bool by_policy = !options.policy.empty();
+  const std::string unused = by_policy ? OptionOfMethods(options) : "";
+  if (!unused.empty()) {
+    throw InputError({unused + " has no use here", "", "the policy's motion is what it is",
+                      "leave it out, or plan by --method"});
+  }
+  if (!by_policy && options.executed > 0) {
+    throw InputError({"--executed has no use here", "",
+                      "it says how many loops of the policy's motion are done",
+                      "give --policy, or leave it out"});
+  }
+  const bool has_draws = !options.rigs.empty() || by_policy;
+  if (!has_draws && options.design.num_believed != DesignArguments().num_believed) {
+    throw InputError({"--believed has no use here", "", "it is how many rigs of --rigs are drawn",
+                      "add --rigs paper, or leave it out"});
+  }
 }
 
 // As the carrier makes it.
@@ -110,34 +165,78 @@ void PrintExpectation(const char* what, const Motion& motion, const Value& expec
   std::printf("\n");
 }
 
-ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
-  if (options.policy.empty() == options.method.empty()) {
-    throw InputError(
-        {"plan by what?", "", "give either --method or --policy", "for example --method fisher"});
+std::string TaskNameOf(const Options& options, const std::optional<PlannedBefore>& before) {
+  const bool is_said = !options.task.empty();
+  if (!before || !before->task) return is_said ? options.task : "intrinsic";
+  if (!is_said || options.task == *before->task) return *before->task;
+  throw InputError(
+      {"a policy of another task", options.policy,
+       "it was learned for the " + *before->task + " task, " + options.task + " was asked for",
+       "use --task " + *before->task + ", or learn one for " + options.task});
+}
+
+// The loops that are not executed yet, designed anew for what is known of the rig by now: within
+// the path and time of the motion as it was, unless told otherwise. @return What it took.
+int64_t PlanRest(const Options& options, MotionDesignProblem problem, Motion* motion) {
+  const auto num_loops = static_cast<int>(motion->loops.size());
+  if (options.executed >= num_loops) {
+    throw InputError({"nothing is left to plan", options.policy,
+                      "its motion has " + std::to_string(num_loops) + " loops",
+                      "use --executed " + std::to_string(num_loops - 1) + " or less"});
   }
+  problem.num_loops = num_loops;
+  problem.num_fixed_loops = options.executed;
+  problem.base_pose = motion->base_pose;
+  if (!(options.design.max_path_m > 0.0)) problem.max_path_m = PathLength(*motion);
+  if (!(options.design.max_time_s > 0.0)) problem.max_duration_s = Duration(*motion);
+  const int wanted = options.evaluations > 0 ? options.evaluations : kEvaluationsOfRest;
+  const int evaluations = std::max(1, static_cast<int>(wanted / NumEvaluations(problem)));
+  const std::optional<MotionDesign> design = DesignMotion(problem, *motion, {evaluations});
+  if (!design) return NumEvaluations(problem);
+  const auto fitting = WithRestThatFits(design->motion, static_cast<size_t>(options.executed),
+                                        motion->carrier, problem.rigs.front());
+  if (!fitting) return design->num_information_evaluations;
+  const Value provenance = motion->provenance;
+  *motion = fitting->timed->motion;
+  motion->provenance = provenance;
+  if (motion->provenance.IsObject()) {
+    motion->provenance.Set("executed_loops", options.executed).Set("planned_anew_for", options.rig);
+  }
+  return design->num_information_evaluations;
+}
+
+ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
+  CheckUse(options);
   if (std::filesystem::exists(options.out) && !global.force) {
     throw InputError({"cannot write the motion", options.out, "it exists", "add --force"});
   }
-  const Task task = TaskFromName(options.task);
+  std::optional<PlannedBefore> before;
+  if (!options.policy.empty()) before = ReadPolicyMotion(options.policy);
+  const std::string task_name = TaskNameOf(options, before);
+  const Task task = TaskFromName(task_name);
   const Carrier carrier = CarrierFromName(options.carrier);
   const Rng rng(global.seed);
   std::vector<Rig> rigs = {AsEstimated(ReadRig(options.rig))};
   if (!options.rigs.empty()) {
-    const auto drawn =
-        BelievedRigs(RigDistributionFromName(options.rigs), options.design.num_believed, rng);
-    rigs.insert(rigs.end(), drawn.begin() + 1, drawn.end());
+    rigs = BelievedRigs(RigDistributionFromName(options.rigs), options.design.num_believed, rng,
+                        rigs.front());
   }
   const Rig rig = rigs.front();
-  const MotionDesignProblem problem =
-      MakeDesignProblem(task, carrier, std::move(rigs), options.design);
+  MotionDesignProblem problem = MakeDesignProblem(task, carrier, std::move(rigs), options.design);
+  const int num_evaluations_wanted = options.evaluations > 0 ? options.evaluations : kEvaluations;
 
   Motion motion;
   int64_t num_evaluations = 0;
-  if (!options.policy.empty()) {
-    motion = Executed(PolicyMotion(options.policy), carrier, rig);
+  if (before) {
+    before->motion.base_pose = BasePoseBeforeBoard(rig, before->motion.base_pose);
+    motion = Executed(before->motion, carrier, rig);
+    if (options.executed > 0) {
+      num_evaluations = PlanRest(options, problem, &motion);
+      motion = Executed(std::move(motion), carrier, rig);
+    }
   } else {
     std::optional<MotionDesign> design =
-        PlanByMethod(options.method, problem, options.evaluations, rng);
+        PlanByMethod(options.method, problem, num_evaluations_wanted, rng);
     if (!design) {
       throw InputError({"no motion teaches anything about this rig", options.rig,
                         "the board is never seen as a whole",
@@ -147,7 +246,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
     motion = Executed(std::move(design->motion), carrier, rig);
     motion.provenance = Value::Object()
                             .Set("method", options.method)
-                            .Set("task", options.task)
+                            .Set("task", task_name)
                             .Set("prior", options.rigs.empty() ? "the rig of " + options.rig
                                                                : "rigs " + options.rigs)
                             .Set("seed", std::to_string(global.seed))
@@ -158,8 +257,8 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   if (global.json) {
     const Value result = Value::Object()
                              .Set("kind", "plan")
-                             .Set("task", options.task)
-                             .Set("method", options.method)
+                             .Set("task", task_name)
+                             .Set("method", before ? "policy" : options.method)
                              .Set("carrier", options.carrier)
                              .Set("path_length_m", PathLength(motion))
                              .Set("motion_s", Duration(motion))
@@ -187,15 +286,20 @@ Action SetUpPlan(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--rig", options->rig, "RIG.yaml: what is believed of the rig")->required();
   app.add_option("--policy", options->policy, "Folder of a learned policy: its motion");
   app.add_option("--method", options->method, methods);
-  app.add_option("--task", options->task, "intrinsic, extrinsic or joint")->capture_default_str();
+  app.add_option("--executed", options->executed,
+                 "Loops of the policy's motion that are done; the rest is planned anew for --rig, "
+                 "as known by now")
+      ->check(CLI::Range(1, 1000));
+  app.add_option("--task", options->task,
+                 "intrinsic, extrinsic or joint (the policy's; with --method intrinsic)");
   app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
   app.add_option("--rigs", options->rigs,
                  "A distribution of which rigs are drawn that the motion must suit as well");
   AddDesignArguments(app, &options->design);
   app.add_option("--evaluations", options->evaluations,
-                 "Of expected information, one motion for one rig each")
-      ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
+                 "Of expected information, one motion for one rig each (4000; of the rest of a "
+                 "policy's motion 400)")
+      ->check(CLI::Range(1, 100000000));
   app.add_option("--out", options->out, "MOTION.yaml to write")->required();
   return [options, &global] { return RunPlan(*options, global); };
 }

@@ -92,9 +92,12 @@ class RunningProgram {
  public:
   /// @param max_file_bytes  No file may become larger, as on a disk that is full; the write that
   /// goes beyond it fails.
+  /// @param launcher  A command that starts it, with its own options: mpirun -n 2.
   explicit RunningProgram(const Arguments& arguments,
-                          std::optional<rlim_t> max_file_bytes = std::nullopt) {
-    std::vector<std::string> words = {CALIBRATO_PROGRAM};
+                          std::optional<rlim_t> max_file_bytes = std::nullopt,
+                          const Arguments& launcher = {}) {
+    std::vector<std::string> words = launcher;
+    words.emplace_back(CALIBRATO_PROGRAM);
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     argv.reserve(words.size() + 1);
@@ -116,7 +119,7 @@ class RunningProgram {
       const rlimit limit{*max_file_bytes, *max_file_bytes};
       if (setrlimit(RLIMIT_FSIZE, &limit) != 0) _exit(kNotStarted);
     }
-    if (is_caught) execv(argv[0], argv.data());
+    if (is_caught) execvp(argv[0], argv.data());
     _exit(kNotStarted);
   }
   ~RunningProgram() {
@@ -128,6 +131,15 @@ class RunningProgram {
   RunningProgram& operator=(const RunningProgram&) = delete;
 
   void Signal(int signal) const { kill(pid_, signal); }
+
+  /// The processes that it started itself, as a launcher does.
+  [[nodiscard]] std::vector<pid_t> Children() const {
+    const std::string pid = std::to_string(pid_);
+    std::istringstream listed(ContentOf("/proc/" + pid + "/task/" + pid + "/children"));
+    std::vector<pid_t> children;
+    for (pid_t child = 0; listed >> child;) children.push_back(child);
+    return children;
+  }
 
   [[nodiscard]] bool IsRunning() const {
     siginfo_t info{};

@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <random>
 #include <string>
 #include <thread>
+#include <vector>
 
+#include "calibrato/base/full_sample_for_test.h"
 #include "calibrato/cli/program_for_test.h"
 
 namespace calibrato {
@@ -155,8 +159,13 @@ TEST(Learn, KilledAtAnyMomentAndResumedWritesTheBytesOfARunThatNeverStopped) {
   std::mt19937 moments(1);
   std::uniform_int_distribution<int> delay_ms(0, 300);
   // The start-up (maybe before anything is written), the first episodes, and twice after the first
-  // checkpoint, so that a resumed run is killed as well.
-  for (const std::ptrdiff_t lines : {0, 2, 8, 9}) {
+  // checkpoint, so that a resumed run is killed as well; the full sample at 20 moments.
+  std::vector<std::ptrdiff_t> all_lines = {0, 2, 8, 9};
+  if (FullSample()) {
+    all_lines.clear();
+    for (std::ptrdiff_t k = 0; k < 20; ++k) all_lines.push_back(k / 2);
+  }
+  for (const std::ptrdiff_t lines : all_lines) {
     RunningProgram program(LearnOrResume(out));
     WaitForLines(program, out, lines);
     std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(moments)));
@@ -191,6 +200,93 @@ TEST(Learn, InterruptedSavesItsStateAndResumedWritesTheBytesOfARunThatNeverStopp
   const Ended ended = RunProgram(LearnOrResume(out));
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   ExpectSameFiles(LearnedWithoutInterruption(), ResultFiles(out));
+}
+
+// Preset best: a design, then rounds of eight episodes.
+Arguments BestArguments(const std::string& out) {
+  Arguments arguments = {"learn", "extrinsic", "--believed", "0",     "--episodes",
+                         "24",    "--seed",    "3",          "--out", out};
+  if (std::filesystem::exists(out + "/checkpoint.json")) arguments.emplace_back("--resume");
+  return arguments;
+}
+
+TEST(Learn, OfPresetBestKilledAtAnyMomentAndResumedWritesTheBytesOfARunThatNeverStopped) {
+  const ScratchFolder scratch;
+  const std::string whole = scratch.Path("whole");
+  EXPECT_EQ(RunProgram(WithThreads(BestArguments(whole), 1)).exit_code, 0);
+  const std::string out = scratch.Path("out");
+  std::mt19937 moments(1);
+  std::uniform_int_distribution<int> delay_ms(0, 1500);
+  // During the first design, and after the first round. The running round is lost each time, so
+  // that a moment later than the round takes ends the run.
+  std::vector<std::ptrdiff_t> all_lines = {0, 8};
+  if (FullSample())
+    all_lines.assign({0, 0, 0, 0, 0, 0, 0, 0, 8, 8, 8, 8, 8, 8, 16, 16, 16, 16, 16, 16});
+  for (const std::ptrdiff_t lines : all_lines) {
+    RunningProgram program(WithThreads(BestArguments(out), 2));
+    WaitForLines(program, out, lines);
+    std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(moments)));
+    program.Signal(SIGKILL);
+    const Ended ended = program.Wait();
+    EXPECT_TRUE(ended.signal == SIGKILL || ended.exit_code == 0) << ended.err;
+  }
+  EXPECT_EQ(RunProgram(WithThreads(BestArguments(out), 2)).exit_code, 0);
+  ExpectSameFiles(ResultFiles(whole), ResultFiles(out));
+}
+
+// mpirun, where it is; it refuses root unless told otherwise, and more processes than cores.
+std::optional<Arguments> Mpirun(int num_processes) {
+  if (std::system("mpirun --version >/dev/null 2>&1") != 0) return std::nullopt;
+  setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  return Arguments{"mpirun", "--oversubscribe", "-n", std::to_string(num_processes)};
+}
+
+Arguments InRounds(const std::string& out) {
+  Arguments arguments = LearnArguments();
+  arguments.insert(arguments.end(), {"--round", "3", "--out", out});
+  if (std::filesystem::exists(out + "/checkpoint.bin")) arguments.emplace_back("--resume");
+  return arguments;
+}
+
+TEST(Learn, InTwoProcessesWritesTheBytesOfOne) {
+  const auto mpirun = Mpirun(2);
+  if (!mpirun) GTEST_SKIP() << "needs mpirun (openmpi-bin)";
+  const ScratchFolder scratch;
+  const std::string alone = scratch.Path("alone");
+  EXPECT_EQ(RunProgram(InRounds(alone)).exit_code, 0);
+  const std::string together = scratch.Path("together");
+  const Ended ended = RunningProgram(InRounds(together), std::nullopt, *mpirun).Wait();
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  // One process speaks.
+  EXPECT_EQ(ended.out.find("episodes"), ended.out.rfind("episodes")) << ended.out;
+  ExpectSameFiles(ResultFiles(alone), ResultFiles(together));
+
+  // A worker that is lost ends them all; one process goes on.
+  const std::string lost = scratch.Path("lost");
+  {
+    RunningProgram program(InRounds(lost), std::nullopt, *mpirun);
+    WaitForLines(program, lost, 3);
+    const std::vector<pid_t> workers = program.Children();
+    ASSERT_EQ(workers.size(), 2U);
+    kill(workers.back(), SIGKILL);
+    EXPECT_NE(program.Wait().exit_code, 0);
+  }
+  EXPECT_FALSE(std::filesystem::exists(lost + "/result.json"));
+  EXPECT_EQ(RunProgram(InRounds(lost)).exit_code, 0);
+  ExpectSameFiles(ResultFiles(alone), ResultFiles(lost));
+}
+
+TEST(Learn, OfPresetBestInTwoProcessesWritesTheBytesOfOne) {
+  const auto mpirun = Mpirun(2);
+  if (!mpirun) GTEST_SKIP() << "needs mpirun (openmpi-bin)";
+  const ScratchFolder scratch;
+  const std::string alone = scratch.Path("alone");
+  EXPECT_EQ(RunProgram(BestArguments(alone)).exit_code, 0);
+  const std::string together = scratch.Path("together");
+  const Ended ended = RunningProgram(BestArguments(together), std::nullopt, *mpirun).Wait();
+  EXPECT_EQ(ended.exit_code, 0) << ended.err;
+  ExpectSameFiles(ResultFiles(alone), ResultFiles(together));
 }
 
 TEST(Evaluate, WritesTheSameBytesAgainAndForAnyNumberOfThreads) {

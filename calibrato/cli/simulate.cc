@@ -9,12 +9,14 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/value.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/motion/carrier.h"
 #include "calibrato/recording/video_writer.h"
 #include "calibrato/sensors/effects.h"
 #include "calibrato/simulation/outside_view.h"
+#include "calibrato/simulation/rig_distribution.h"
 #include "calibrato/simulation/simulated_recording.h"
 #include "calibrato/simulation/simulated_run.h"
 
@@ -58,11 +60,12 @@ class MotionVideo {
   void Add(const CarrierPath& path, const SimulatedImage& image) {
     const RgbImage picture = SideBySide(outside_.Draw(path, image.t_s), image.image);
     if (!file_) file_.emplace(Name(), picture.resolution, rate_hz_);
-    file_->Add(picture);
+    file_->Add(picture, image.t_s);
   }
 
-  /// Ends the file. Returns its content.
-  std::string Finish() {
+  /// Ends the file with the motion. Returns its content.
+  std::string Finish(double duration_s) {
+    if (file_) file_->Finish(duration_s);
     file_.reset();
     constexpr size_t kMaxBytes = size_t{2} << 30;
     return ReadFile(Name(), kMaxBytes);
@@ -94,6 +97,10 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   Motion motion = ReadMotion(options.motion);
   if (!options.carrier.empty()) motion.carrier = CarrierFromName(options.carrier);
   if (!options.timing.empty()) motion.timing = TimingFromName(options.timing);
+  // Of a motion that says only how to move, the board decides from where.
+  if (ReadYaml(options.motion).Find("base_pose") == nullptr) {
+    motion.base_pose = BasePoseBeforeBoard(rig);
+  }
 
   auto planned = PlanMotion(motion, rig);
   if (const auto* refusal = std::get_if<Refusal>(&planned)) {
@@ -113,14 +120,18 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
       SimulateRun(rig, timed, fidelity, kSimulationStart, Rng(global.seed), film);
   const size_t num_views = run.images.empty() ? run.frames.views.size() : run.images.size();
   if (num_views == 0) {
-    throw InputError({"the camera never saw the whole board", options.motion,
-                      std::to_string(run.frames.num_frames) + " frames were taken",
-                      "check T_w_g and T_e_c0 of the rig"});
+    throw InputError({"no frame shows the board", options.motion,
+                      "of " + std::to_string(run.frames.num_frames) + " frames " +
+                          std::to_string(run.frames.num_out_of_image) +
+                          " have it outside the image, " +
+                          std::to_string(run.frames.num_lost_to_blur) + " lost it to blur, " +
+                          std::to_string(run.frames.num_dropped) + " were dropped",
+                      "check T_w_g and T_e_c0 of the rig, or move more slowly"});
   }
   for (auto& [name, content] : SimulatedRecordingFiles(rig, timed, kSimulationStart, run)) {
     out.Add(name, content);
   }
-  if (video) out.Add("video.avi", video->Finish());
+  if (video) out.Add("video.avi", video->Finish(timed.duration_s()));
   out.Commit();
   Value summary = Value::Object();
   summary.Set("kind", "simulation")
@@ -143,7 +154,7 @@ ExitCode RunSimulate(const Options& options, const GlobalOptions& global) {
   if (global.json) {
     std::fputs(ToJson(summary).c_str(), stdout);
   } else if (!global.quiet) {
-    const char* what = run.images.empty() ? "show the whole board" : "were rendered";
+    const char* what = run.images.empty() ? "show the board" : "were rendered";
     std::printf("%zu of %d frames %s; %.2f s, path %.3f m, scale %.3f\n%s\n", num_views,
                 run.frames.num_frames, what, timed.duration_s(), PathLength(timed.motion),
                 timed.scale, options.out.c_str());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -16,18 +17,21 @@ constexpr double kMaxReach = 7.0;  // [px]
 constexpr double kMaxDistanceFromEdge = 3.5;  // [px]
 constexpr double kMinWidth = 1.8;             // [px] from the corner to the window's side
 constexpr int kMinPixels = 20;
-constexpr int kMaxIterations = 15;
+constexpr int kMaxIterations = 25;
 constexpr double kNearlyConvergedStep = 0.2;  // [px]
-constexpr double kConvergedStep = 0.003;      // [px]; the next step would be a hundredth of it
-constexpr double kMinContrast = 6.0;          // [grey levels]
-constexpr double kMaxMisfit = 0.3;            // root mean square residual over half the contrast
-constexpr double kMaxDeviation = 0.3;         // [px]
-constexpr double kMinAngle = 0.2;             // [rad] between the edges
-constexpr double kMaxTurn = 0.35;             // [rad] of an edge against its arm
-constexpr double kStartBlur = 0.8;            // [px]
-constexpr double kMinBlur = 0.25;             // [px]
-constexpr double kMaxBlur = 4.0;              // [px]
-constexpr double kLightScale = kMaxReach;     // makes the light's two parameters of order 1
+constexpr double kConvergedStep = 0.003;      // [px]
+// Where edges are sharper than pixels a step may leave half of the way still to go, so that it is
+// worth while to go on.
+constexpr double kFinestStep = 3e-4;       // [px]
+constexpr double kMinContrast = 6.0;       // [grey levels]
+constexpr double kMaxMisfit = 0.3;         // root mean square residual over half the contrast
+constexpr double kMaxDeviation = 0.3;      // [px]
+constexpr double kMinAngle = 0.2;          // [rad] between the edges
+constexpr double kMaxTurn = 0.35;          // [rad] of an edge against its arm
+constexpr double kStartBlur = 0.8;         // [px]
+constexpr double kMinBlur = 0.05;          // [px]
+constexpr double kMaxBlur = 4.0;           // [px]
+constexpr double kLightScale = kMaxReach;  // makes the light's two parameters of order 1
 
 // c (2), angles of the edges (2), log of the blur, m, a, light (2).
 constexpr int kNumParameters = 9;
@@ -40,19 +44,20 @@ struct Pixel {
   double value;
 };
 
-// erf(t) and its slope, from a table: exp would take half of the fit's time. Linear interpolation
-// leaves an error of 3e-5.
+// erf(t), its integral t erf(t) + exp(-t^2) / sqrt(pi), and its slope, from a table: exp would take
+// half of the fit's time. Linear interpolation leaves an error of 3e-5.
 class ErrorFunction {
  public:
   struct Value {
+    double integral;
     double erf;
     double slope;
   };
   ErrorFunction() {
     for (int k = 0; k <= kSize; ++k) {
       const double t = (k - kSize / 2) / kSteps;
-      values_[static_cast<size_t>(k)] = {std::erf(t),
-                                         2.0 * std::numbers::inv_sqrtpi * std::exp(-t * t)};
+      const double bell = std::numbers::inv_sqrtpi * std::exp(-t * t);
+      values_[static_cast<size_t>(k)] = {t * std::erf(t) + bell, std::erf(t), 2.0 * bell};
     }
   }
   Value At(double t) const {
@@ -61,7 +66,9 @@ class ErrorFunction {
     const double share = position - static_cast<double>(k);
     const Value& low = values_[k];
     const Value& high = values_[k + 1];
-    return {low.erf + share * (high.erf - low.erf), low.slope + share * (high.slope - low.slope)};
+    const double beyond_table = std::max(0.0, std::abs(t) - kSize / (2.0 * kSteps));
+    return {low.integral + share * (high.integral - low.integral) + beyond_table,
+            low.erf + share * (high.erf - low.erf), low.slope + share * (high.slope - low.slope)};
   }
 
  private:
@@ -72,22 +79,35 @@ class ErrorFunction {
 
 // One blurred edge at a pixel.
 struct Edge {
-  double value;     // E(d / s), -1 to 1
-  double slope;     // its derivative by d
-  double distance;  // d
-  double along;     // from the corner, along the edge
+  double value;    // E, -1 to 1
+  double slope;    // its derivative by d
+  double by_blur;  // and by the logarithm of the blur
+  double along;    // from the corner, along the edge
 };
 
+// The mean of the blurred edge over a pixel. Seen along the edge a pixel's square is a trapezoid:
+// its wider side is integrated over, its narrower one is as much blur as its variance. So the edge
+// between two pixels of a row is exact, and so is where its place leaves no trace but one pixel's
+// grey.
 class BlurredEdge {
  public:
-  BlurredEdge(double angle, double blur)
-      : cos_(std::cos(angle)), sin_(std::sin(angle)), scale_(1.0 / (std::numbers::sqrt2 * blur)) {}
+  BlurredEdge(double angle, double blur) : cos_(std::cos(angle)), sin_(std::sin(angle)) {
+    half_width_ = 0.5 * std::max(std::abs(cos_), std::abs(sin_));
+    const double other_half = 0.5 * std::min(std::abs(cos_), std::abs(sin_));
+    const double stddev = std::sqrt(blur * blur + other_half * other_half / 3.0);
+    scale_ = 1.0 / (std::numbers::sqrt2 * stddev);
+    per_scale_and_width_ = 0.5 / (scale_ * half_width_);
+    blur_slope_ = 0.25 / half_width_ * std::numbers::sqrt2 * blur * blur / stddev;
+  }
 
   Edge At(double u, double v) const {
     static const ErrorFunction error_function;
     const double distance = cos_ * v - sin_ * u;
-    const ErrorFunction::Value value = error_function.At(distance * scale_);
-    return {value.erf, value.slope * scale_, distance, cos_ * u + sin_ * v};
+    const ErrorFunction::Value high = error_function.At((distance + half_width_) * scale_);
+    const ErrorFunction::Value low = error_function.At((distance - half_width_) * scale_);
+    return {per_scale_and_width_ * (high.integral - low.integral),
+            0.5 / half_width_ * (high.erf - low.erf), blur_slope_ * (high.slope - low.slope),
+            cos_ * u + sin_ * v};
   }
   // Of the unit vector to the edge's left.
   double normal_u() const { return -sin_; }
@@ -96,7 +116,10 @@ class BlurredEdge {
  private:
   double cos_;
   double sin_;
+  double half_width_;  // of a pixel, across the edge [px]
   double scale_;
+  double per_scale_and_width_;
+  double blur_slope_;
 };
 
 // The pixels of the window, or nothing where it reaches out of the image.
@@ -170,7 +193,7 @@ Step Linearise(const std::vector<Pixel>& pixels, const Parameters& parameters,
                                       -slope_1 * edge_1.normal_v() - slope_2 * edge_2.normal_v(),
                                       -slope_1 * e1.along,
                                       -slope_2 * e2.along,
-                                      -slope_1 * e1.distance - slope_2 * e2.distance,
+                                      light * a * (e1.by_blur * e2.value + e2.by_blur * e1.value),
                                       light,
                                       light * e1.value * e2.value,
                                       plain * light_u,
@@ -244,9 +267,9 @@ std::variant<SaddleFit, SaddleFlaw> FitSaddle(const GreyImage& image, const Sadd
   SaddleWindow centred = window;
   bool is_centred = false;
   double outlier_scale = 1e9;
-  bool has_converged = false;
+  double moved = std::numeric_limits<double>::infinity();  // since the window is centred
   Step step;
-  for (int i = 0; i < kMaxIterations && !has_converged; ++i) {
+  for (int i = 0; i < kMaxIterations && !(moved < kFinestStep); ++i) {
     step = Linearise(*pixels, parameters, outlier_scale);
     // A little damping: where the light, the blur or an angle can't be told it stays.
     Normal damped = step.normal;
@@ -262,8 +285,8 @@ std::variant<SaddleFit, SaddleFlaw> FitSaddle(const GreyImage& image, const Sadd
     const double half_contrast = std::abs(parameters(6));
     outlier_scale =
         std::max(3.0 * std::sqrt(step.squared_residuals / step.weights), 0.05 * half_contrast);
-    const double moved = change.head<2>().cwiseAbs().maxCoeff();
-    if (!is_centred && moved < kNearlyConvergedStep) {
+    const double change_px = change.head<2>().cwiseAbs().maxCoeff();
+    if (!is_centred && change_px < kNearlyConvergedStep) {
       // Only about the corner itself are the model's errors the same on all sides.
       is_centred = true;
       centred.centre += parameters.head<2>();
@@ -273,7 +296,7 @@ std::variant<SaddleFit, SaddleFlaw> FitSaddle(const GreyImage& image, const Sadd
       if (pixels->size() < kMinPixels) return SaddleFlaw::kBadFit;
       continue;
     }
-    has_converged = is_centred && moved < kConvergedStep;
+    if (is_centred) moved = change_px;
   }
 
   const double half_contrast = std::abs(parameters(6));
@@ -283,7 +306,7 @@ std::variant<SaddleFit, SaddleFlaw> FitSaddle(const GreyImage& image, const Sadd
   const double turn =
       std::max(std::abs(std::remainder(parameters(2) - start(2), std::numbers::pi)),
                std::abs(std::remainder(parameters(3) - start(3), std::numbers::pi)));
-  if (!has_converged || !(turn <= kMaxTurn) || !(2.0 * half_contrast >= kMinContrast) ||
+  if (!(moved < kConvergedStep) || !(turn <= kMaxTurn) || !(2.0 * half_contrast >= kMinContrast) ||
       !(variance <= kMaxMisfit * kMaxMisfit * half_contrast * half_contrast) ||
       !(angle >= kMinAngle)) {
     return SaddleFlaw::kBadFit;

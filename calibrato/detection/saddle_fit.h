@@ -40,11 +40,12 @@ enum class SaddleFlaw {
 
 /// Finds the crossing of two edges to sub-pixels by fitting the picture of one,
 ///
-///     I(x) = (1 + h . (x - c0)) (m + a E(d1(x) / s) E(d2(x) / s)),     E(t) = erf(t / sqrt 2),
+///     I(x) = (1 + h . (x - c0)) (m + a E(d1(x)) E(d2(x))),
 ///
-/// where d1, d2 are the distances of x from the edges, s the blur [px], and h the gradient of the
-/// light: least squares over c, the edges' two angles, s, m, a, h, with outlying pixels given less
-/// weight.
+/// where d1, d2 are the distances of x from the edges, E the mean over a pixel of erf(d / (sqrt 2
+/// s)), s the blur [px], and h the gradient of the light: least squares over c, the edges' two
+/// angles, s, m, a, h, with outlying pixels given less weight. The pixel's area is what sharp
+/// images live by: an edge along the pixel rows shows its place in the grey of one row alone.
 ///
 /// Whatever the lens's blur and the camera's tone curve are like, a corner's picture looks the same
 /// after half a turn about it (blur does not shift edges, and a curve changes no place), and so

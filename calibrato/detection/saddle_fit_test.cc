@@ -94,6 +94,50 @@ TEST(SaddleFit, FindsTheCrossingToAFiftiethOfAPixel) {
   }
 }
 
+// Black and white seen without any blur: each pixel the mean over its area, by quadrature.
+GreyImage DrawSharp(const Picture& picture) {
+  GreyImage image{{kSide, kSide}, {}};
+  const DrawnEdge edge_1{std::cos(picture.angle_1), std::sin(picture.angle_1), 0.0};
+  const DrawnEdge edge_2{std::cos(picture.angle_2), std::sin(picture.angle_2), 0.0};
+  constexpr int kSamples = 50;
+  for (int v = 0; v < kSide; ++v) {
+    for (int u = 0; u < kSide; ++u) {
+      const double x = u - picture.corner.x();
+      const double y = v - picture.corner.y();
+      const bool is_even =
+          std::min(std::abs(edge_1.Distance(x, y)), std::abs(edge_2.Distance(x, y))) > 0.8;
+      const int num = is_even ? 1 : kSamples;
+      int balance = 0;
+      for (int i = 0; i < num * num; ++i) {
+        const double dx = (i % num + 0.5) / num - 0.5;
+        const double dy = (i / num + 0.5) / num - 0.5;
+        balance +=
+            (edge_1.Distance(x + dx, y + dy) > 0.0) == (edge_2.Distance(x + dx, y + dy) > 0.0) ? 1
+                                                                                               : -1;
+      }
+      const double brightness = 120.0 + picture.half_contrast * balance / (num * num);
+      image.pixels.push_back(static_cast<uint8_t>(std::lround(brightness)));
+    }
+  }
+  return image;
+}
+
+// The grey of one row of pixels is all that tells the place of an edge along the rows.
+TEST(SaddleFit, FindsTheCrossingOfSharpEdgesWhereverItLiesWithinAPixel) {
+  for (const double turn : {0.0, 0.01, 0.05, 0.4}) {
+    for (const double phase : {-0.4, -0.3, -0.2, -0.1, 0.0, 0.15, 0.25, 0.35, 0.45}) {
+      Picture picture;
+      picture.corner = {20.0 + phase, 20.0 - 0.7 * phase};
+      picture.angle_1 = turn;
+      picture.angle_2 = turn + 0.5 * std::numbers::pi;
+      const auto fit = FitSaddle(DrawSharp(picture), WindowOf(picture, 9.0));
+      ASSERT_TRUE(std::holds_alternative<SaddleFit>(fit)) << turn << " " << phase;
+      EXPECT_LT((std::get<SaddleFit>(fit).pixel - picture.corner).norm(), 0.015)
+          << turn << " " << phase;
+    }
+  }
+}
+
 TEST(SaddleFit, TellsWhichQuadrantIsDark) {
   Picture picture;
   EXPECT_TRUE(

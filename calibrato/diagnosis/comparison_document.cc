@@ -5,6 +5,7 @@
 #include "calibrato/base/input_error.h"
 #include "calibrato/diagnosis/checks_document.h"
 #include "calibrato/diagnosis/finding.h"
+#include "calibrato/diagnosis/result_parameters.h"
 #include "calibrato/sensors/camera_chain.h"
 
 namespace calibrato {
@@ -64,9 +65,10 @@ CameraEstimate ReadCamera(const Value& value, const std::string& name,
 }
 
 const Value::Elements& Cameras(const Value& result) {
-  if (result.At("kind").AsString() != "camera") {
-    result.At("kind").Fail("cannot compare this result", "only results of calibrate camera can be",
-                           "give two --out folders of calibrate camera");
+  if (CalibrationKind(result) != "camera") {
+    result.At("kind").Fail("cannot compare these results",
+                           "one is of a camera, one of a camera-imu",
+                           "give two --out folders of the same command");
   }
   return result.At("cameras").elements();
 }
@@ -75,6 +77,8 @@ std::vector<const Significance*> Tests(const ResultComparison& comparison) {
   std::vector<const Significance*> tests;
   for (const auto& pair : comparison.cameras) {
     tests.push_back(&pair.camera.significance);
+    const Significance& focal = pair.camera.focal_change.significance;
+    if (focal.is_known()) tests.push_back(&focal);
     if (pair.T_cn_cnm1) tests.push_back(&pair.T_cn_cnm1->significance);
   }
   return tests;
@@ -134,9 +138,9 @@ ResultComparison CompareResults(const Value& first, const Value& second) {
   return comparison;
 }
 
-Agreement AgreementOf(const ResultComparison& comparison) {
+Agreement AgreementOf(const ResultComparison& comparison, double level) {
   const std::vector<const Significance*> tests = Tests(comparison);
-  const double limit = kSignificance / static_cast<double>(tests.size());
+  const double limit = level / static_cast<double>(tests.size());
   const auto differs = [&](const Significance* test) { return test->probability < limit; };
   const auto is_known = [](const Significance* test) { return test->is_known(); };
   if (std::any_of(tests.begin(), tests.end(), differs)) return Agreement::kDiffer;
@@ -144,7 +148,7 @@ Agreement AgreementOf(const ResultComparison& comparison) {
                                                            : Agreement::kInconclusive;
 }
 
-Value ComparisonResult(const ResultComparison& comparison) {
+Value ComparisonResult(const ResultComparison& comparison, double level) {
   Value cameras = Value::Array();
   for (const auto& pair : comparison.cameras) {
     const CameraComparison& camera = pair.camera;
@@ -157,6 +161,9 @@ Value ComparisonResult(const ResultComparison& comparison) {
         .Set("statistic", camera.significance.statistic)
         .Set("degrees_of_freedom", camera.significance.degrees)
         .Set("tested", camera.by_parameters ? "parameters" : "projection")
+        .Set("focal_change", camera.focal_change.relative)
+        .Set("focal_change_sigma", camera.focal_change.sigma)
+        .Set("focal_change_probability", camera.focal_change.significance.probability)
         .Set("rms_difference_px", camera.rms_px)
         .Set("expected_rms_difference_px", camera.expected_rms_px)
         .Set("rotation_rad", Value::Numbers(camera.rotation))
@@ -172,12 +179,13 @@ Value ComparisonResult(const ResultComparison& comparison) {
   }
   Value result = Value::Object();
   result.Set("kind", "diff")
-      .Set("agreement", AgreementName(AgreementOf(comparison)))
+      .Set("agreement", AgreementName(AgreementOf(comparison, level)))
+      .Set("level", level)
       .Set("cameras", std::move(cameras));
   return result;
 }
 
-std::string ComparisonText(const ResultComparison& comparison) {
+std::string ComparisonText(const ResultComparison& comparison, double level) {
   std::string text;
   for (const auto& pair : comparison.cameras) {
     const CameraComparison& camera = pair.camera;
@@ -191,6 +199,11 @@ std::string ComparisonText(const ResultComparison& comparison) {
     text += Format("), after a turn by %.2f mrad\n", 1e3 * camera.rotation.norm());
     text += std::string("  ") + (camera.by_parameters ? "parameters" : "projection") +
             " as far apart: " + Chance(camera.significance) + "\n";
+    if (camera.focal_change.significance.is_known()) {
+      text += Format("  if only the focal length changed, by %.4f %% (+- %.4f): ",
+                     100.0 * camera.focal_change.relative, 100.0 * camera.focal_change.sigma) +
+              Chance(camera.focal_change.significance) + "\n";
+    }
     if (pair.T_cn_cnm1) {
       text +=
           Format("  T_cn_cnm1 apart by %.2f mrad and %.2f mm: ", 1e3 * pair.T_cn_cnm1->rotation_rad,
@@ -198,7 +211,7 @@ std::string ComparisonText(const ResultComparison& comparison) {
           Chance(pair.T_cn_cnm1->significance) + "\n";
     }
   }
-  switch (AgreementOf(comparison)) {
+  switch (AgreementOf(comparison, level)) {
     case Agreement::kAgree:
       return text + "the results agree\n";
     case Agreement::kDiffer:

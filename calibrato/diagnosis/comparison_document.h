@@ -35,15 +35,20 @@ enum class Agreement {
 [[nodiscard]] ResultComparison CompareResults(const Value& first, const Value& second);
 
 /// Where several differences are tested, each must be as much rarer by chance (Bonferroni).
-[[nodiscard]] Agreement AgreementOf(const ResultComparison& comparison);
+/// @param level  How often all tests together may find a difference where there is none.
+[[nodiscard]] Agreement AgreementOf(const ResultComparison& comparison,
+                                    double level = kSignificance);
 
-/// {"kind": "diff", "agreement", "cameras": [{"name", "models": [2], "resolution": [w, h],
+/// {"kind": "diff", "agreement", "level", "cameras": [{"name", "models": [2], "resolution": [w, h],
 /// "probability", "statistic", "degrees_of_freedom", "tested": "parameters" or "projection",
+/// "focal_change" (relative, if only it changed), "focal_change_sigma", "focal_change_probability",
 /// "rms_difference_px", "expected_rms_difference_px", "rotation_rad": [3], "difference_px": map
 /// (checks_document.h), "T_cn_cnm1": {"rotation_rad", "translation_m", "probability"}}, ..]}
-[[nodiscard]] Value ComparisonResult(const ResultComparison& comparison);
+[[nodiscard]] Value ComparisonResult(const ResultComparison& comparison,
+                                     double level = kSignificance);
 
 /// In plain text, for the terminal.
-[[nodiscard]] std::string ComparisonText(const ResultComparison& comparison);
+[[nodiscard]] std::string ComparisonText(const ResultComparison& comparison,
+                                         double level = kSignificance);
 
 }  // namespace calibrato

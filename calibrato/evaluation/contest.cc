@@ -23,6 +23,19 @@ void CheckFidelity(const ContestSetting& setting) {
   if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
 }
 
+// A hand has no dynamics either, whatever the others move on.
+void CheckTrajectories(const ContestSetting& setting, const std::vector<Contestant>& contestants) {
+  if (setting.fidelity != Fidelity::kPhysical) return;
+  for (const Contestant& contestant : contestants) {
+    for (const ExecutableMotion& motion : contestant.motions) {
+      if (motion.timed) continue;
+      throw InputError({"fidelity physical is that of an arm", contestant.policy,
+                        "a recorded trajectory is carried by hand, and has no dynamics",
+                        "leave it out, or use --fidelity fast or rendered"});
+    }
+  }
+}
+
 Trial TrialOf(const ContestSetting& setting, const Rig& rig, const ExecutableMotion& motion,
               const Rng& noise) {
   try {
@@ -49,6 +62,10 @@ std::vector<Rig> RigsUnderTrial(const ContestSetting& setting) {
   });
 }
 
+Rng NoiseOf(const ContestSetting& setting, size_t rig) {
+  return Rng(setting.seed).Stream(kNoisePurpose, rig);
+}
+
 Rig PlanningScene(const ContestSetting& setting) {
   return setting.fixed_rig ? *setting.fixed_rig : PaperRig();
 }
@@ -66,11 +83,11 @@ ExecutableMotion MotionOnRig(const ContestSetting& setting, const ExecutableMoti
 ContestTrials RunContest(const ContestSetting& setting, const std::vector<Rig>& rigs,
                          const std::vector<Contestant>& contestants) {
   CheckFidelity(setting);
-  const Rng rng(setting.seed);
+  CheckTrajectories(setting, contestants);
   Progress progress("evaluating", static_cast<int64_t>(rigs.size()));
   // Of one rig: all members of all contestants, one after the other.
   const auto of_rigs = ParallelMap<std::vector<Trial>>(rigs.size(), [&](size_t i) {
-    const Rng noise = rng.Stream(kNoisePurpose, i);
+    const Rng noise = NoiseOf(setting, i);
     std::vector<Trial> trials;
     for (const Contestant& contestant : contestants) {
       for (size_t m = 0; m < contestant.num_members(); ++m) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrato/base/rng.h"
 #include "calibrato/evaluation/contestant.h"
 #include "calibrato/evaluation/statistics.h"
 #include "calibrato/evaluation/trial.h"
@@ -27,6 +28,9 @@ struct ContestSetting {
 
 /// The rigs of the setting.
 [[nodiscard]] std::vector<Rig> RigsUnderTrial(const ContestSetting& setting);
+
+/// The noise of a rig's trials: whatever the motion.
+[[nodiscard]] Rng NoiseOf(const ContestSetting& setting, size_t rig);
 
 /// The scene in which motions are planned that are the same for all rigs.
 [[nodiscard]] Rig PlanningScene(const ContestSetting& setting);

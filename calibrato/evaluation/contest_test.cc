@@ -82,6 +82,26 @@ TEST(Contest, PhysicalIsRefusedWithoutAnArm) {
   EXPECT_THROW(static_cast<void>(RunContest(setting, RigsUnderTrial(setting), {})), InputError);
 }
 
+TEST(Contest, PhysicalIsRefusedForARecordedTrajectory) {
+  ContestSetting setting = Extrinsic(1);
+  setting.fidelity = Fidelity::kPhysical;
+  setting.carrier = Carrier::kArm;
+  RecordedTrajectory hand;
+  for (int k = 0; k <= 100; ++k) {
+    hand.t_s.push_back(0.02 * k);
+    hand.T_g_c0.push_back({Eigen::Matrix3d::Identity(), {0.1 * std::sin(0.1 * k), 0.0, 1.4}});
+  }
+  const auto brought =
+      BroughtContestants({{"hand", hand, {}}}, setting.task, Carrier::kArm, PaperRig());
+  try {
+    static_cast<void>(RunContest(setting, RigsUnderTrial(setting), brought));
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("hand: a recorded trajectory"), std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Contestants, MotionsOfOneNameAreMembersOfOneMethod) {
   const Motion motion = HandcraftedMotion(Task::kIntrinsic);
   const std::vector<MotionUnderTrial> brought = {{"learned", motion, Task::kIntrinsic},

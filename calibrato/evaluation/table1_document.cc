@@ -8,13 +8,12 @@
 
 #include "calibrato/evaluation/chart.h"
 #include "calibrato/evaluation/method_row.h"
+#include "calibrato/evaluation/motion_drawing.h"
 #include "calibrato/evaluation/paper_figures.h"
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
 namespace {
-
-Value Numbers(const Eigen::Vector3d& v) { return Value::Numbers(v); }
 
 // With no more digits than a picture shows; pages hold thousands of these.
 Value FourDigits(double x) {
@@ -22,13 +21,6 @@ Value FourDigits(double x) {
   char text[40];
   std::snprintf(text, sizeof(text), "%.4g", x);
   return std::strtod(text, nullptr);
-}
-
-template <typename Vector>
-Value Rounded(const Vector& v) {
-  Value value = Value::Array();
-  for (const double x : v) value.Append(FourDigits(x));
-  return value;
 }
 
 Value PlotOf(const Table1& table, const Table1Row& row) {
@@ -66,43 +58,10 @@ Value RowValue(const Table1& table, size_t k) {
   return value;
 }
 
-// Where the motion's loops begin and end [s]; a recorded trajectory is one.
-std::vector<double> LoopEnds(const ExecutableMotion& motion) {
-  if (!motion.timed) return {0.0, motion.path.duration_s};
-  std::vector<double> ends = {0.0};
-  for (const double duration_s : motion.timed->loop_duration_s) {
-    ends.push_back(ends.back() + duration_s);
-  }
-  return ends;
-}
-
-// The camera's way and, now and then, where it looked, loop by loop.
 Value MotionPlot(const Table1& table, const Table1Row& row) {
-  constexpr int kPointsALoop = 60;
-  constexpr int kAxesEvery = 6;
-  const Rigid3 T_e_c0 = PlanningScene(table.options.setting).T_e_c0;
-  const std::vector<double> ends = LoopEnds(row.example);
-  Value loops = Value::Array();
-  Value axes = Value::Array();
-  for (size_t i = 0; i + 1 < ends.size(); ++i) {
-    Value loop = Value::Array();
-    for (int k = 0; k <= kPointsALoop; ++k) {
-      const double t_s = ends[i] + (ends[i + 1] - ends[i]) * k / kPointsALoop;
-      const Rigid3 T_b_c0 = row.example.path.at(t_s).T_b_e * T_e_c0;
-      loop.Append(Rounded(T_b_c0.t));
-      if (k % kAxesEvery == 0) {
-        Eigen::Matrix<double, 6, 1> axis;
-        axis << T_b_c0.t, T_b_c0.R.col(2);
-        axes.Append(Rounded(axis));
-      }
-    }
-    loops.Append(std::move(loop));
-  }
-  Value plot = PlotOf(table, row);
-  plot.Set("path_length_m", row.example.path_length_m)
-      .Set("motion_s", row.example.path.duration_s)
-      .Set("loops", std::move(loops))
-      .Set("axis_b", std::move(axes));
+  Value plot = MotionDrawing(row.example, PlanningScene(table.options.setting));
+  const Value setting = PlotOf(table, row);
+  for (const auto& [key, value] : setting.members()) plot.Set(key, value);
   return plot;
 }
 
@@ -126,18 +85,6 @@ Value CoveragePlot(const Table1& table, const Table1Row& row) {
   Value plot = PlotOf(table, row);
   plot.Set("pixels", std::move(pixels));
   return plot;
-}
-
-Value BoardOutline(const Rig& rig) {
-  const Rigid3 T_b_g = ArmBaseInWorld().Inverse() * rig.T_w_g;
-  const Eigen::Matrix3Xd points = BoardPoints(rig.board);
-  const Eigen::Vector3d far = points.rowwise().maxCoeff();
-  Value outline = Value::Array();
-  for (const auto& [x, y] :
-       {std::pair{0.0, 0.0}, {far.x(), 0.0}, {far.x(), far.y()}, {0.0, far.y()}}) {
-    outline.Append(Numbers(T_b_g * Eigen::Vector3d(x, y, 0.0)));
-  }
-  return outline;
 }
 
 }  // namespace

@@ -153,6 +153,19 @@ TEST(Table1, TheExtrinsicRowsHaveEveryKeyOfTheirTask) {
   EXPECT_EQ(handcrafted.At("intervals").At("translation_error_m").size(), 2U);
 }
 
+TEST(Table1, EveryRowsMotionIsDrawnAndPlayed) {
+  const Table1& table = SmallExtrinsicTable();
+  const Value plots = Table1Plots({table});
+  const auto& motions = plots.At("motions").elements();
+  ASSERT_EQ(motions.size(), table.rows.size());
+  for (size_t k = 0; k < motions.size(); ++k) {
+    EXPECT_EQ(motions[k].At("policy").AsString(), table.rows[k].policy);
+    EXPECT_EQ(motions[k].At("carrier").AsString(), "free");
+    EXPECT_GT(motions[k].At("played").At("camera_b").size(), 10U);
+  }
+  EXPECT_EQ(plots.At("board_outline_b").size(), 4U);
+}
+
 TEST(Table1, TheBestSimpleRivalIsNoLongerThanTheHandcraftedMotion) {
   const Table1& table = SmallExtrinsicTable();
   const Table1Row& best = RowOf(table, table.best_simple_rival);

@@ -2,28 +2,32 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
-#include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
 #include "calibrato/learning/gaussian_process.h"
 
 namespace calibrato {
 namespace {
 
-// Of the two functions of the trust. The expected loss is known without noise, and moves by tenths
-// over the whole range; how far it is off may move as much.
+// Of the three functions of the trust. The expected loss is known without noise, and moves by
+// tenths over the whole range; how far it is off may move as much. What is stated comes of the same
+// rigs and noise in each round, so that rounds differ by little but their motions.
 constexpr GaussianProcessOptions kExpectation{
     .length_scale = 1.0, .signal_stddev = 0.5, .noise_stddev = 0.02};
+constexpr GaussianProcessOptions kStated{
+    .length_scale = 0.7, .signal_stddev = 0.3, .noise_stddev = 0.02};
 constexpr double kLengthScale = 0.7;
-constexpr double kErrorStddev = 0.3;
+constexpr double kOverconfidenceStddev = 0.2;
 constexpr int kNumCandidates = 512;
 constexpr int kFramesOfStarts = 24;
 
@@ -38,21 +42,35 @@ double NoiseOf(const DesignRound& round) {
 class LossModel {
  public:
   explicit LossModel(const std::vector<DesignRound>& rounds)
-      : base_(rounds.front().expected_loss),
-        expected_(Points(rounds), Expected(rounds, base_), kExpectation),
-        error_(Points(rounds), Errors(rounds),
-               {.length_scale = kLengthScale,
-                .signal_stddev = kErrorStddev,
-                .noise_stddev = NoiseOf(rounds.front())}) {}
+      : expected_(
+            Points(rounds),
+            Values(rounds, [base = rounds.front().expected_loss](
+                               const DesignRound& round) { return round.expected_loss - base; }),
+            kExpectation),
+        stated_(Points(rounds),
+                Values(rounds,
+                       [](const DesignRound& round) {
+                         return StatedLoss(round) - round.expected_loss;
+                       }),
+                kStated),
+        overconfidence_(Points(rounds), Values(rounds, &Overconfidence),
+                        {.length_scale = kLengthScale,
+                         .signal_stddev = kOverconfidenceStddev,
+                         .noise_stddev = NoiseOf(rounds.front())}) {}
 
   [[nodiscard]] double Hopeful(const Trust& trust) const {
-    const Belief expected = expected_.At(trust);
-    const Belief error = error_.At(trust);
-    return expected.mean + error.mean - std::hypot(expected.stddev, error.stddev);
+    double mean = 0.0;
+    double variance = 0.0;
+    for (const GaussianProcess* part : {&expected_, &stated_, &overconfidence_}) {
+      const Belief belief = part->At(trust);
+      mean += belief.mean;
+      variance += belief.stddev * belief.stddev;
+    }
+    return mean - std::sqrt(variance);
   }
-  // Of a round that was played: its expectation is known.
+  // Of a round that was played: only what its few rigs tell roughly leans on the other rounds.
   [[nodiscard]] double Believed(const DesignRound& round) const {
-    return round.expected_loss + error_.At(round.trust).mean;
+    return StatedLoss(round) + overconfidence_.At(round.trust).mean;
   }
 
  private:
@@ -62,22 +80,17 @@ class LossModel {
       points.col(static_cast<Eigen::Index>(i)) = rounds[i].trust;
     return points;
   }
-  static Eigen::VectorXd Expected(const std::vector<DesignRound>& rounds, double base) {
+  static Eigen::VectorXd Values(const std::vector<DesignRound>& rounds,
+                                const std::function<double(const DesignRound&)>& value) {
     Eigen::VectorXd values(static_cast<Eigen::Index>(rounds.size()));
     for (size_t i = 0; i < rounds.size(); ++i)
-      values(static_cast<Eigen::Index>(i)) = rounds[i].expected_loss - base;
-    return values;
-  }
-  static Eigen::VectorXd Errors(const std::vector<DesignRound>& rounds) {
-    Eigen::VectorXd values(static_cast<Eigen::Index>(rounds.size()));
-    for (size_t i = 0; i < rounds.size(); ++i)
-      values(static_cast<Eigen::Index>(i)) = RealisedLoss(rounds[i]) - rounds[i].expected_loss;
+      values(static_cast<Eigen::Index>(i)) = value(rounds[i]);
     return values;
   }
 
-  double base_;
   GaussianProcess expected_;
-  GaussianProcess error_;
+  GaussianProcess stated_;
+  GaussianProcess overconfidence_;
 };
 
 // The second round draws all limits in halfway, so that there is something to compare; the others
@@ -108,14 +121,36 @@ size_t BestRound(const std::vector<DesignRound>& rounds) {
   return best;
 }
 
+// A design on its way between processes; nothing stays nothing.
+std::string ToText(const std::optional<MotionDesign>& design) {
+  if (!design) return "";
+  return ToJsonLine(Value::Object()
+                        .Set("motion", ToValue(design->motion))
+                        .Set("loss", design->loss)
+                        .Set("evaluations", design->num_information_evaluations));
+}
+
+std::optional<MotionDesign> DesignFromText(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  const Value value = ParseJson(text, "the design of a process");
+  return MotionDesign{MotionFromValue(value.At("motion"), nullptr), value.At("loss").AsDouble(),
+                      value.At("evaluations").AsInt()};
+}
+
 class DesignLearner {
  public:
-  DesignLearner(const DesignLearnOptions& options, const Judge& judge, std::string folder)
-      : options_(options), judge_(judge), folder_(std::move(folder)), rng_(options.seed) {
+  DesignLearner(const DesignLearnOptions& options, const Judge& judge, std::string folder,
+                Team& team)
+      : options_(options),
+        judge_(judge),
+        folder_(std::move(folder)),
+        team_(team),
+        rng_(options.seed) {
     result_.task = options.problem.task;
     result_.preset = "best";
     if (!options.resume) return;
-    progress_ = ReadDesignProgress(folder_, NameOfRun());
+    progress_ = DesignProgressFromText(
+        OfTheFirst(team_, [&] { return ReadDesignCheckpoint(folder_); }), folder_, NameOfRun());
     if (NumEpisodes() <= options.num_episodes) return;
     throw InputError({"cannot resume", folder_,
                       "it has " + std::to_string(NumEpisodes()) + " episodes, " +
@@ -129,7 +164,7 @@ class DesignLearner {
     Progress progress("learning", static_cast<int>(num_rounds) * options_.episodes_per_round);
     progress.Advance(static_cast<int>(progress_.rounds.size()) * options_.episodes_per_round);
     while (progress_.rounds.size() < num_rounds) {
-      if (interrupt != nullptr && interrupt->load()) {
+      if (AnyOf(team_, interrupt != nullptr && interrupt->load())) {
         return Ended(LearnTermination::kInterrupted, "interrupted after episode " +
                                                          std::to_string(NumEpisodes()) +
                                                          "; continue with --resume");
@@ -168,8 +203,20 @@ class DesignLearner {
   }
 
   void Save() const {
+    ExpectAlike(team_, ToJsonLine(ToValue(progress_.rounds.back().motion.motion)) +
+                           std::to_string(RealisedLoss(progress_.rounds.back())));
+    if (!team_.is_first()) return;
     std::filesystem::create_directories(folder_);
     WriteDesignProgress(folder_, NameOfRun(), progress_, options_.problem.task);
+  }
+
+  // MapOver, its time taken.
+  std::vector<std::string> Divide(size_t n, const std::function<std::string(size_t)>& function) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::string> results = MapOver(team_, n, function);
+    result_.divided_s +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return results;
   }
 
   // For the nominal rig from many starts, then for all rigs.
@@ -179,8 +226,15 @@ class DesignLearner {
     // Enough for the fourth harmonic, in half the time. The final design needs more: with few
     // frames the board leaves the image between them.
     nominal.frames_per_loop = std::min(nominal.frames_per_loop, kFramesOfStarts);
+    const DesignMany by_team = [&](size_t n, const auto& from_start) {
+      std::vector<std::optional<MotionDesign>> designs;
+      for (const std::string& text : Divide(n, [&](size_t k) { return ToText(from_start(k)); })) {
+        designs.push_back(DesignFromText(text));
+      }
+      return designs;
+    };
     std::optional<MotionDesign> design =
-        DesignFromManyStarts(nominal, options_.starts, rng_.Stream("starts"));
+        DesignFromManyStarts(nominal, options_.starts, rng_.Stream("starts"), by_team);
     if (!design) {
       throw InputError({"nothing to learn from", "",
                         "no motion within these limits shows the board",
@@ -233,13 +287,15 @@ class DesignLearner {
       executed.loops[i].duration_s = round.motion.loop_duration_s[i];
     }
     round.expected_loss = ExpectLoss(options_.problem, executed).value;
-    progress_.num_information_evaluations += static_cast<int64_t>(options_.problem.rigs.size());
-    round.judgements = ParallelMap<MotionJudgement>(
-        static_cast<size_t>(options_.episodes_per_round), [&](size_t i) {
-          MotionJudgement judgement = judge_(round.motion, i);
-          progress->Advance();
-          return judgement;
-        });
+    progress_.num_information_evaluations += NumEvaluations(options_.problem);
+    const auto judgements = Divide(static_cast<size_t>(options_.episodes_per_round), [&](size_t i) {
+      std::string judgement = ToJsonLine(ToValue(judge_(round.motion, i)));
+      progress->Advance(team_.size());
+      return judgement;
+    });
+    for (const std::string& text : judgements) {
+      round.judgements.push_back(JudgementFromValue(ParseJson(text, "the judgement of a process")));
+    }
     progress_.rounds.push_back(std::move(round));
     Save();
   }
@@ -272,7 +328,7 @@ class DesignLearner {
                                     .Set("episodes", NumEpisodes())
                                     .Set("round", best + 1)
                                     .Set("trusted", ToValue(LimitsOf(round.trust)));
-    WriteDesignPolicy(folder_ + "/policy", NameOfRun(), result_.motion);
+    if (team_.is_first()) WriteDesignPolicy(folder_ + "/policy", NameOfRun(), result_.motion);
     char text[200];
     std::snprintf(text, sizeof(text), "done: %d episodes; the motion of round %zu of %zu, %s",
                   NumEpisodes(), best + 1, progress_.rounds.size(),
@@ -284,6 +340,7 @@ class DesignLearner {
   const DesignLearnOptions& options_;
   const Judge& judge_;
   std::string folder_;
+  Team& team_;
   Rng rng_;
   DesignProgress progress_;
   LearnResult result_;
@@ -292,9 +349,11 @@ class DesignLearner {
 }  // namespace
 
 LearnResult LearnByDesign(const DesignLearnOptions& options, const Judge& judge,
-                          const std::string& folder, const std::atomic<bool>* interrupt) {
+                          const std::string& folder, const std::atomic<bool>* interrupt,
+                          Team* team) {
   assert(!options.problem.rigs.empty() && options.episodes_per_round >= 1);
-  return DesignLearner(options, judge, folder).Run(interrupt);
+  Alone alone;
+  return DesignLearner(options, judge, folder, team != nullptr ? *team : alone).Run(interrupt);
 }
 
 }  // namespace calibrato

@@ -36,9 +36,11 @@ struct DesignLearnOptions {
 /// information, robustly over the rigs that may come; what is learned is where that expectation
 /// fails. The first round trusts it up to the carrier's limits. Each later one draws those limits
 /// in (trusted_limits.h) to where the loss may be least: the mean less one sigma of the expected
-/// loss, interpolated, and of its error, a Gaussian process of what the rounds so far have shown;
-/// it designs anew within them, and plays. The motion of the round whose believed loss is least is
-/// the policy's.
+/// loss, of what the stated one adds to it, and of the errors' size over what is stated, each a
+/// Gaussian process of what the rounds so far have shown; it designs anew within them, and plays.
+/// The motion of the round whose believed loss is least is the policy's: the loss that was stated,
+/// which all rounds have of the same rigs and noise, as it is, and the errors' size, which a few
+/// rigs tell but roughly, smoothed.
 ///
 /// Where the expectation is right, the first round wins, and learning adds nothing: then it says
 /// so.
@@ -48,9 +50,11 @@ struct DesignLearnOptions {
 /// for any number of threads, whether or not the run was interrupted, killed and resumed.
 ///
 /// @param interrupt  May be null. Once true, the run stops after the running round.
+/// @param team  As Learn: episodes and first starts are divided.
 /// @throws InputError as Learn; or if nothing is learned from any start.
 [[nodiscard]] LearnResult LearnByDesign(const DesignLearnOptions& options, const Judge& judge,
                                         const std::string& folder,
-                                        const std::atomic<bool>* interrupt = nullptr);
+                                        const std::atomic<bool>* interrupt = nullptr,
+                                        Team* team = nullptr);
 
 }  // namespace calibrato

@@ -9,6 +9,8 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/parallel.h"
+#include "calibrato/learning/team_of_threads.h"
 #include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
@@ -98,6 +100,50 @@ TEST(LearnByDesign, KeepsTheDesignWhereTheModelIsRight) {
   };
   const LearnResult learned = LearnByDesign(options, judge, NewFolder("right"));
   EXPECT_NE(learned.termination_text.find("round 1 of 4"), std::string::npos)
+      << learned.termination_text;
+}
+
+TEST(LearnByDesign, WritesTheSameBytesForAnyNumberOfProcesses) {
+  DesignLearnOptions options = SmallRun();
+  options.num_episodes = 12;
+  const Judge judge = [&](const TimedMotion& motion, uint64_t index) {
+    MotionJudgement judgement = JudgeWith(options, 1.0, motion);
+    judgement.nees += 0.1 * static_cast<double>(index);
+    return judgement;
+  };
+  const std::string alone = NewFolder("alone");
+  const LearnResult result = LearnByDesign(options, judge, alone);
+  const std::string together = NewFolder("together");
+  const auto texts = RunAsTeam(3, [&](Team& team) {
+    const LearnResult own = LearnByDesign(options, judge, together, nullptr, &team);
+    return own.termination_text + std::to_string(own.num_information_evaluations);
+  });
+  for (const std::string& text : texts) {
+    EXPECT_EQ(text, result.termination_text + std::to_string(result.num_information_evaluations));
+  }
+  for (const char* file :
+       {"training.jsonl", "checkpoint.json", "policy/motion.yaml", "policy/policy.yaml"}) {
+    EXPECT_EQ(ReadFile(alone + "/" + file), ReadFile(together + "/" + file)) << file;
+  }
+}
+
+// What every round states of the same rigs is not smoothed away: a narrow valley between rounds
+// that are worse is kept.
+TEST(LearnByDesign, KeepsTheRoundThatIsStatedToBeBest) {
+  DesignLearnOptions options = SmallRun();
+  options.num_episodes = 24;
+  int num_judged = 0;
+  // The fourth round is better by more than its noise, the others are alike.
+  const Judge judge = [&](const TimedMotion& motion, uint64_t) {
+    const int round = num_judged++ / options.episodes_per_round;
+    return MotionJudgement{
+        ExpectLoss(options.problem, Executed(motion)).value + (round == 3 ? -0.25 : 0.3), 6.0, 6,
+        0.01};
+  };
+  SetNumThreads(1);
+  const LearnResult learned = LearnByDesign(options, judge, NewFolder("valley"));
+  SetNumThreads(0);
+  EXPECT_NE(learned.termination_text.find("round 4 of 6"), std::string::npos)
       << learned.termination_text;
 }
 

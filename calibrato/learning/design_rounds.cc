@@ -19,23 +19,9 @@ constexpr size_t kMaxBytes = size_t{1} << 30;
 
 std::string CheckpointPath(const std::string& folder) { return folder + "/checkpoint.json"; }
 
-Value ToValue(const MotionJudgement& judgement) {
-  return Value::Object()
-      .Set("stated_loss", judgement.stated_loss)
-      .Set("nees", judgement.nees)
-      .Set("nees_dimension", judgement.nees_dimension)
-      .Set("relative_error", judgement.relative_error);
-}
-
-MotionJudgement JudgementFromValue(const Value& value) {
-  return {value.At("stated_loss").AsDouble(), value.At("nees").AsNonNegative(),
-          static_cast<int>(value.At("nees_dimension").AsInt(1, 1000)),
-          value.At("relative_error").AsNonNegative()};
-}
-
 Value ToValue(const DesignRound& round) {
   Value judgements = Value::Array();
-  for (const MotionJudgement& it : round.judgements) judgements.Append(ToValue(it));
+  for (const MotionJudgement& it : round.judgements) judgements.Append(calibrato::ToValue(it));
   return Value::Object()
       .Set("trust", Value::Numbers(round.trust))
       .Set("motion", ToValue(round.motion.motion))
@@ -93,20 +79,40 @@ std::string TrainingLines(const DesignProgress& progress, Task task) {
 
 }  // namespace
 
-double RealisedLoss(const DesignRound& round) {
+Value ToValue(const MotionJudgement& judgement) {
+  return Value::Object()
+      .Set("stated_loss", judgement.stated_loss)
+      .Set("nees", judgement.nees)
+      .Set("nees_dimension", judgement.nees_dimension)
+      .Set("relative_error", judgement.relative_error);
+}
+
+MotionJudgement JudgementFromValue(const Value& value) {
+  return {value.At("stated_loss").AsDouble(), value.At("nees").AsNonNegative(),
+          static_cast<int>(value.At("nees_dimension").AsInt(1, 1000)),
+          value.At("relative_error").AsNonNegative()};
+}
+
+double StatedLoss(const DesignRound& round) {
   assert(!round.judgements.empty());
   double stated = 0.0;
+  for (const MotionJudgement& it : round.judgements) stated += it.stated_loss;
+  return stated / static_cast<double>(round.judgements.size());
+}
+
+double Overconfidence(const DesignRound& round) {
+  assert(!round.judgements.empty());
   double nees = 0.0;
   double dimension = 0.0;
   for (const MotionJudgement& it : round.judgements) {
-    stated += it.stated_loss;
     nees += it.nees;
     dimension += it.nees_dimension;
   }
-  const auto n = static_cast<double>(round.judgements.size());
-  const double believed = kBelievedRigs * dimension / n;
-  return stated / n + 0.5 * std::log((believed + nees) / (believed + dimension));
+  const double believed = kBelievedRigs * dimension / static_cast<double>(round.judgements.size());
+  return 0.5 * std::log((believed + nees) / (believed + dimension));
 }
+
+double RealisedLoss(const DesignRound& round) { return StatedLoss(round) + Overconfidence(round); }
 
 void WriteDesignProgress(const std::string& folder, const Value& run,
                          const DesignProgress& progress, Task task) {
@@ -121,13 +127,19 @@ void WriteDesignProgress(const std::string& folder, const Value& run,
   WriteFileAtomically(CheckpointPath(folder), ToJson(checkpoint));
 }
 
-DesignProgress ReadDesignProgress(const std::string& folder, const Value& run) {
+std::string ReadDesignCheckpoint(const std::string& folder) {
   const std::string path = CheckpointPath(folder);
   if (!std::filesystem::exists(path)) {
     throw InputError({"nothing to resume", path, "there is no such file",
                       "leave out --resume, or give the --out of the run to continue"});
   }
-  const Value checkpoint = ParseJson(ReadFile(path, kMaxBytes), path);
+  return ReadFile(path, kMaxBytes);
+}
+
+DesignProgress DesignProgressFromText(const std::string& text, const std::string& folder,
+                                      const Value& run) {
+  const std::string path = CheckpointPath(folder);
+  const Value checkpoint = ParseJson(text, path);
   const Value& version = checkpoint.At("format_version");
   if (version.AsInt() != kFormatVersion) {
     version.Fail("cannot resume", "its format is version " + std::to_string(version.AsInt()),

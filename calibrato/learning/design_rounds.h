@@ -21,10 +21,18 @@ struct DesignRound {
   std::vector<MotionJudgement> judgements;  ///< One an episode.
 };
 
-/// What a round says of its design [of a sigma's logarithm]: the mean of the stated losses, plus
-/// half the logarithm of how much larger errors were than stated. That ratio, the pooled NEES over
+/// Mean of the losses that the solver stated after it saw the data.
+[[nodiscard]] double StatedLoss(const DesignRound& round);
+/// Half the logarithm of how much larger errors were than stated. That ratio, the pooled NEES over
 /// its dimension, is believed to be 1 as firmly as if four more rigs had said so.
+[[nodiscard]] double Overconfidence(const DesignRound& round);
+/// What a round says of its design [of a sigma's logarithm]: the sum of both.
 [[nodiscard]] double RealisedLoss(const DesignRound& round);
+
+/// A judgement on its way between processes.
+[[nodiscard]] Value ToValue(const MotionJudgement& judgement);
+/// @throws InputError
+[[nodiscard]] MotionJudgement JudgementFromValue(const Value& value);
 
 /// All that a run knows: what it will do next follows from it.
 struct DesignProgress {
@@ -38,8 +46,12 @@ struct DesignProgress {
 void WriteDesignProgress(const std::string& folder, const Value& run,
                          const DesignProgress& progress, Task task);
 
-/// @throws InputError that names the file: missing, damaged, or of another run, and in what.
-[[nodiscard]] DesignProgress ReadDesignProgress(const std::string& folder, const Value& run);
+/// The content of checkpoint.json. @throws InputError that names the file if it is missing.
+[[nodiscard]] std::string ReadDesignCheckpoint(const std::string& folder);
+/// @param folder  Where the checkpoint stood, for errors.
+/// @throws InputError that names the file: damaged, or of another run, and in what.
+[[nodiscard]] DesignProgress DesignProgressFromText(const std::string& checkpoint,
+                                                    const std::string& folder, const Value& run);
 
 /// policy.yaml (format version, run) and motion.yaml. @throws InputError if they can't be written.
 void WriteDesignPolicy(const std::string& folder, const Value& run, const Motion& motion);

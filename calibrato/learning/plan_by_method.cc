@@ -30,100 +30,109 @@ Motion MotionAt(const MotionDesignProblem& problem, const Eigen::VectorXd& posit
   return motion;
 }
 
-// Keeps the best of all that is tried.
+// Keeps the best of all that is tried, and counts what it takes.
 class Trials {
  public:
   explicit Trials(const MotionDesignProblem& problem) : problem_(problem) {}
 
-  // Minus the losses of motions once they fit.
-  Eigen::VectorXd Values(const std::vector<Motion>& motions) {
+  // Minus the losses of motions once they fit; their gradients, asked for, are those of the fitted
+  // motions by the shape that was tried, as if the factor that fits them were given.
+  SearchValues Values(const std::vector<Motion>& motions, bool want_gradients = false) {
     struct Outcome {
       std::optional<Motion> motion;
-      double loss = kNothingIsLearned;
+      ExpectedLoss loss{kNothingIsLearned, {}};
     };
     const auto outcomes = ParallelMap<Outcome>(motions.size(), [&](size_t i) {
-      Outcome outcome{FitToBudget(problem_, motions[i])};
-      if (outcome.motion) outcome.loss = ExpectLoss(problem_, *outcome.motion).value;
+      Outcome outcome{FitToBudget(problem_, motions[i]), {kNothingIsLearned, {}}};
+      if (outcome.motion) outcome.loss = ExpectLoss(problem_, *outcome.motion, want_gradients);
       return outcome;
     });
-    Eigen::VectorXd values(static_cast<Eigen::Index>(outcomes.size()));
-    for (size_t i = 0; i < outcomes.size(); ++i) {
-      values(static_cast<Eigen::Index>(i)) = -outcomes[i].loss;
-      if (outcomes[i].loss >= best_.loss) continue;
-      best_.loss = outcomes[i].loss;
-      best_.motion = *outcomes[i].motion;
+    num_evaluations_ += static_cast<int64_t>(motions.size()) * NumEvaluations(problem_);
+    const auto n = static_cast<Eigen::Index>(outcomes.size());
+    SearchValues values{Eigen::VectorXd(n), {}};
+    if (want_gradients) {
+      values.gradients = Eigen::MatrixXd::Zero(problem_.num_loops * kNumCoefficients, n);
     }
-    num_motions_ += static_cast<int64_t>(motions.size());
+    for (size_t i = 0; i < outcomes.size(); ++i) {
+      const auto& [motion, loss] = outcomes[i];
+      const auto column = static_cast<Eigen::Index>(i);
+      values.values(column) = -loss.value;
+      if (want_gradients && motion) {
+        values.gradients.col(column) = -GradientByPosition(loss, *motion, motions[i]);
+      }
+      if (loss.value >= best_.loss) continue;
+      best_.loss = loss.value;
+      best_.motion = *motion;
+    }
     return values;
   }
 
   [[nodiscard]] std::optional<MotionDesign> Best() const {
     if (best_.motion.loops.empty()) return std::nullopt;
     MotionDesign design = best_;
-    design.num_information_evaluations = num_motions_ * static_cast<int64_t>(problem_.rigs.size());
+    design.num_information_evaluations = num_evaluations_;
     return design;
   }
 
  private:
+  static Eigen::VectorXd GradientByPosition(const ExpectedLoss& loss, const Motion& fitted,
+                                            const Motion& tried) {
+    const LoopCoefficients scale = ScaledAction(LoopCoefficients::Ones());
+    Eigen::VectorXd gradient =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(tried.loops.size()) * kNumCoefficients);
+    for (size_t loop = 0; loop < loss.gradient.size(); ++loop) {
+      const double before = tried.loops[loop].coefficients.norm();
+      if (!(before > 0.0)) continue;
+      const double factor = fitted.loops[loop].coefficients.norm() / before;
+      gradient.segment<kNumCoefficients>(static_cast<Eigen::Index>(loop) * kNumCoefficients) =
+          factor * loss.gradient[loop].coefficients.cwiseProduct(scale);
+    }
+    return gradient;
+  }
+
   const MotionDesignProblem& problem_;
   MotionDesign best_{{}, kNothingIsLearned, 0};
-  int64_t num_motions_ = 0;
+  int64_t num_evaluations_ = 0;
 };
 
+// Half of the evaluations for the first rig; more rigs share the other half.
 std::optional<MotionDesign> PlanByFisher(const MotionDesignProblem& problem, int num_evaluations,
                                          const Rng& rng) {
-  // Half of the evaluations for the first rig; more rigs share the other half.
-  const auto num_rigs = static_cast<int>(problem.rigs.size());
-  const int for_one = num_rigs == 1 ? num_evaluations : num_evaluations / 2;
-  constexpr int kShortest = 25;  // Evaluations below which a start shows nothing.
-  MultistartOptions options;
-  options.num_starts = std::clamp(for_one / 2 / kShortest, 1, 6);
-  options.evaluations_per_start = std::max(1, for_one / 2 / options.num_starts);
-  options.evaluations_of_best = std::max(1, for_one / 2);
   MotionDesignProblem one = problem;
   one.rigs.resize(1);
+  const auto share = [](int evaluations, const MotionDesignProblem& of) {
+    return std::max(1, static_cast<int>(evaluations / NumEvaluations(of)));
+  };
+  const bool is_robust = problem.rigs.size() > 1;
+  const int for_one = share(is_robust ? num_evaluations / 2 : num_evaluations, one);
+  constexpr int kShortest = 25;  // Evaluations below which a start shows nothing.
+  constexpr int kBesides = 3;    // Of each start and of the best: before and after (DesignMotion).
+  MultistartOptions options;
+  options.num_starts = std::clamp(for_one / 2 / kShortest, 1, 6);
+  options.evaluations_per_start = std::max(1, for_one / 2 / options.num_starts - kBesides);
+  options.evaluations_of_best = std::max(1, for_one / 2 - kBesides);
   std::optional<MotionDesign> design = DesignFromManyStarts(one, options, rng);
-  if (!design || num_rigs == 1) return design;
+  if (!design || !is_robust) return design;
   const int64_t spent = design->num_information_evaluations;
-  const int left = std::max(1, (num_evaluations - for_one) / num_rigs);
-  std::optional<MotionDesign> robust = DesignMotion(problem, design->motion, {left});
+  const int left = share(num_evaluations - num_evaluations / 2, problem) - kBesides;
+  std::optional<MotionDesign> robust = DesignMotion(problem, design->motion, {std::max(1, left)});
   if (robust) robust->num_information_evaluations += spent;
   return robust;
 }
 
-std::vector<Motion> RandomMotions(const MotionDesignProblem& problem, const Rng& rng) {
+// Uniform in the same box that all search.
+std::vector<Motion> RandomMotions(const MotionDesignProblem& problem, int64_t num_motions,
+                                  const Rng& rng) {
   std::vector<Motion> motions;
-  for (int i = 0; i < kNumRandomMotions; ++i) {
+  for (int64_t i = 0; i < num_motions; ++i) {
     Rng draw = rng.Stream("random motion", static_cast<uint64_t>(i));
-    Motion motion;
-    while (motion.loops.size() < static_cast<size_t>(problem.num_loops)) {
-      for (Loop& loop : RandomMotion(problem.task, draw).loops) motion.loops.push_back(loop);
+    Eigen::VectorXd position(problem.num_loops * kNumCoefficients);
+    for (double& x : position) {
+      x = draw.Uniform(-problem.coefficient_limit, problem.coefficient_limit);
     }
-    motion.loops.resize(static_cast<size_t>(problem.num_loops));
-    motions.push_back(std::move(motion));
+    motions.push_back(MotionAt(problem, position));
   }
   return motions;
-}
-
-SearchValues ValuesAt(const MotionDesignProblem& problem, const Eigen::MatrixXd& positions,
-                      bool want_gradients, Trials* trials) {
-  std::vector<Motion> motions;
-  for (const auto& position : positions.colwise()) motions.push_back(MotionAt(problem, position));
-  SearchValues values{trials->Values(motions), {}};
-  if (!want_gradients) return values;
-  // Of the loss as if the motion had fitted as it is: shrinking for path and time keeps its shape.
-  const LoopCoefficients scale = ScaledAction(LoopCoefficients::Ones());
-  values.gradients = Eigen::MatrixXd::Zero(positions.rows(), positions.cols());
-  const auto losses = ParallelMap<ExpectedLoss>(
-      motions.size(), [&](size_t i) { return ExpectLoss(problem, motions[i], true); });
-  for (size_t i = 0; i < losses.size(); ++i) {
-    for (int loop = 0; loop < problem.num_loops; ++loop) {
-      values.gradients.block<kNumCoefficients, 1>(loop * kNumCoefficients,
-                                                  static_cast<Eigen::Index>(i)) =
-          -losses[i].gradient[static_cast<size_t>(loop)].coefficients.cwiseProduct(scale);
-    }
-  }
-  return values;
 }
 
 }  // namespace
@@ -144,18 +153,24 @@ std::optional<MotionDesign> PlanByMethod(const std::string& method,
   }
   if (method == kFisher) return PlanByFisher(problem, num_evaluations, rng);
   Trials trials(problem);
+  const int num_motions = std::max(1, static_cast<int>(num_evaluations / NumEvaluations(problem)));
   if (method == kBestOfMany) {
-    trials.Values(RandomMotions(problem, rng));
+    (void)trials.Values(
+        RandomMotions(problem, std::min<int64_t>(kNumRandomMotions, num_motions), rng));
     return trials.Best();
   }
-  const int num_motions = std::max(1, num_evaluations / static_cast<int>(problem.rigs.size()));
   const int dimension = problem.num_loops * kNumCoefficients;
   const SearchObjective objective = [&](const Eigen::MatrixXd& positions, bool want_gradients) {
-    return ValuesAt(problem, positions, want_gradients, &trials);
+    std::vector<Motion> motions;
+    for (const auto& position : positions.colwise()) {
+      motions.push_back(MotionAt(problem, position));
+    }
+    return trials.Values(motions, want_gradients);
   };
   Rng draw = rng.Stream("search");
   if (method == kPaperSwarm) {
     SwarmOptions options;
+    options.limit = problem.coefficient_limit;
     options.num_iterations = std::max(0, num_motions / options.num_particles - 1);
     (void)MaximiseBySwarm(objective, dimension, Eigen::MatrixXd(dimension, 0), options, draw);
     return trials.Best();

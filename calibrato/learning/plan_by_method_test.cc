@@ -31,7 +31,8 @@ TEST_P(PlanByEveryMethod, FindsSomethingBetterThanChance) {
   constexpr int kNumEvaluations = 300;
   const auto design = PlanByMethod(GetParam(), problem, kNumEvaluations, Rng(4));
   ASSERT_TRUE(design.has_value());
-  EXPECT_LE(design->num_information_evaluations, GetParam() == "best-of-1000" ? 1000 : 400);
+  EXPECT_LE(design->num_information_evaluations, kNumEvaluations);
+  EXPECT_GE(design->num_information_evaluations, kNumEvaluations / 2);
   EXPECT_EQ(design->loss, ExpectLoss(problem, design->motion).value);
   double random = 0.0;
   constexpr int kNumRandom = 20;
@@ -54,6 +55,19 @@ INSTANTIATE_TEST_SUITE_P(Methods, PlanByEveryMethod, testing::ValuesIn(PlanMetho
                            for (char& c : name) c = c == '-' ? '_' : c;
                            return name;
                          });
+
+// Whatever the number of rigs and parameters, a budget is one.
+TEST_P(PlanByEveryMethod, KeepsToItsBudgetOfBothTasksAndSeveralRigs) {
+  MotionDesignProblem problem = SmallProblem();
+  problem.task = Task::kJoint;
+  problem.rigs = BelievedRigs(RigDistribution::kPaper, 1, Rng(3));
+  EXPECT_EQ(NumEvaluations(problem), 4);
+  constexpr int kNumEvaluations = 600;
+  const auto design = PlanByMethod(GetParam(), problem, kNumEvaluations, Rng(4));
+  ASSERT_TRUE(design.has_value());
+  EXPECT_LE(design->num_information_evaluations, kNumEvaluations);
+  EXPECT_GE(design->num_information_evaluations, kNumEvaluations / 4);
+}
 
 TEST(PlanByMethod, IsReproducible) {
   for (const char* method : {"fisher", "icem"}) {

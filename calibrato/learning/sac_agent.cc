@@ -8,13 +8,28 @@ namespace calibrato {
 namespace {
 
 constexpr int kActionSize = LoopCoefficients::RowsAtCompileTime;
+// The networks are small and their steps long: what counts is that few transitions are used up, and
+// not learned by heart.
+constexpr int kUnitsShare = 4;        // Of the hidden size of the model-based networks.
+constexpr double kRateFactor = 10.0;  // Of their learning rate.
+// Of the critics' actions, in limits. A return of four loops scatters by far more than any one of
+// 36 coefficients can change it: critics that believe each slope that a few hundred transitions
+// show promise twice what there is, and the policy follows them into corners. Noise on the actions
+// shrinks slopes that are not sure (Bishop, "Training with noise is equivalent to Tikhonov
+// regularization", 1995), and the least of several critics is believed.
+constexpr double kActionNoise = 1.0;
+constexpr int kNumCritics = 5;
 constexpr double kTargetShare = 0.005;
 constexpr double kMinLogStddev = -5.0;
 constexpr double kMaxLogStddev = 1.0;
 constexpr double kFloor = 1e-6;  // Of 1 - tanh^2, whose logarithm is taken.
 constexpr double kWantedEntropy = -kActionSize;
-constexpr double kFirstTemperature = 0.1;
+constexpr double kFirstTemperature = 0.003;
 constexpr double kTemperatureRate = 1e-3;
+
+int NumUnits(const NetworkOptions& options) {
+  return std::max(1, options.hidden_size / kUnitsShare);
+}
 
 int StateSize(int observation_size, int horizon) {
   return horizon + observation_size + kActionSize * (horizon - 1);
@@ -38,6 +53,13 @@ Eigen::MatrixXd LogStddev(const Eigen::MatrixXd& policy_output) {
 
 }  // namespace
 
+// What the critics say of the same inputs.
+struct SacAgent::Opinions {
+  std::vector<Perceptron::Pass> passes;
+  Eigen::RowVectorXd least;
+  std::vector<size_t> whose;  // Of each column, the critic that says the least.
+};
+
 // Minibatches, one column a transition.
 struct SacAgent::Batch {
   Eigen::MatrixXd states;
@@ -51,14 +73,14 @@ SacAgent::SacAgent(const LearnOptions& options, int observation_size, int horizo
     : options_(options.networks),
       limit_(options.planning.swarm.limit),
       horizon_(horizon),
-      given_rate_(options.networks.learning_rate),
+      given_rate_(kRateFactor * options.networks.learning_rate),
       learning_rate_(given_rate_),
       normalisation_(UnitNormalisation(observation_size)),
-      actor_(StateSize(observation_size, horizon), options_.hidden_size, 2 * kActionSize, rng),
+      actor_(StateSize(observation_size, horizon), NumUnits(options_), 2 * kActionSize, rng),
       log_temperature_(std::log(kFirstTemperature)) {
-  for (int i = 0; i < 2; ++i) {
-    critics_.emplace_back(StateSize(observation_size, horizon) + kActionSize, options_.hidden_size,
-                          1, rng);
+  for (int i = 0; i < kNumCritics; ++i) {
+    critics_.emplace_back(StateSize(observation_size, horizon) + kActionSize, NumUnits(options_), 1,
+                          rng);
   }
   targets_ = critics_;
 }
@@ -139,22 +161,40 @@ Eigen::MatrixXd SacAgent::SampleGradient(const Eigen::MatrixXd& policy_output,
   return Stacked(by_mean.matrix(), by_log_stddev.matrix());
 }
 
+SacAgent::Opinions SacAgent::Ask(const std::vector<Perceptron>& critics,
+                                 const Eigen::MatrixXd& inputs) {
+  Opinions opinions;
+  for (const Perceptron& critic : critics) opinions.passes.push_back(critic.Forward(inputs));
+  opinions.least = opinions.passes.front().output;
+  opinions.whose.assign(static_cast<size_t>(inputs.cols()), 0);
+  for (size_t k = 1; k < critics.size(); ++k) {
+    for (Eigen::Index i = 0; i < inputs.cols(); ++i) {
+      const double value = opinions.passes[k].output(0, i);
+      if (!(value < opinions.least(i))) continue;
+      opinions.least(i) = value;
+      opinions.whose[static_cast<size_t>(i)] = k;
+    }
+  }
+  return opinions;
+}
+
 double SacAgent::TrainCritics(const Batch& batch, Rng& rng) {
   const Eigen::Index n = batch.states.cols();
   const Sample next = SampleAt(actor_.Forward(batch.next_states).output, Noise(n, rng));
   const Eigen::MatrixXd next_inputs = Stacked(batch.next_states, next.action);
   const Eigen::RowVectorXd value =
-      targets_[0].Forward(next_inputs).output.cwiseMin(targets_[1].Forward(next_inputs).output) -
-      std::exp(log_temperature_) * next.log_density.transpose();
+      Ask(targets_, next_inputs).least - std::exp(log_temperature_) * next.log_density.transpose();
   const Eigen::RowVectorXd wanted = batch.rewards + batch.goes_on.cwiseProduct(value);
+  const Eigen::MatrixXd inputs =
+      Stacked(batch.states, batch.actions + kActionNoise * Noise(n, rng));
   double loss = 0.0;
   for (size_t i = 0; i < critics_.size(); ++i) {
-    const Perceptron::Pass pass = critics_[i].Forward(Stacked(batch.states, batch.actions));
+    const Perceptron::Pass pass = critics_[i].Forward(inputs);
     const Eigen::RowVectorXd error = pass.output - wanted;
     (void)critics_[i].Backward(pass, 2.0 / static_cast<double>(n) * error);
     critics_[i].Step(learning_rate_);
     targets_[i].MoveTowards(critics_[i], kTargetShare);
-    loss += error.squaredNorm() / static_cast<double>(2 * n);
+    loss += error.squaredNorm() / static_cast<double>(kNumCritics * n);
   }
   return loss;
 }
@@ -165,14 +205,16 @@ void SacAgent::TrainActor(const Batch& batch, Rng& rng) {
   const Eigen::MatrixXd noise = Noise(n, rng);
   const Sample sample = SampleAt(pass.output, noise);
   const Eigen::MatrixXd inputs = Stacked(batch.states, sample.action);
-  const Perceptron::Pass a = critics_[0].Forward(inputs);
-  const Perceptron::Pass b = critics_[1].Forward(inputs);
-  // The smaller critic's slope, column by column.
-  const Eigen::RowVectorXd is_a = (a.output.array() <= b.output.array()).cast<double>().matrix();
-  const Eigen::RowVectorXd is_b = Eigen::RowVectorXd::Ones(n) - is_a;
-  const Eigen::MatrixXd by_action =
-      -(critics_[0].InputGradient(a, is_a) + critics_[1].InputGradient(b, is_b))
-           .bottomRows(kActionSize);
+  // The slope of the critic that says the least, column by column.
+  const Opinions opinions = Ask(critics_, inputs);
+  Eigen::MatrixXd by_action = Eigen::MatrixXd::Zero(kActionSize, n);
+  for (size_t k = 0; k < critics_.size(); ++k) {
+    Eigen::RowVectorXd is_its = Eigen::RowVectorXd::Zero(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (opinions.whose[static_cast<size_t>(i)] == k) is_its(i) = 1.0;
+    }
+    by_action -= critics_[k].InputGradient(opinions.passes[k], is_its).bottomRows(kActionSize);
+  }
   const Eigen::MatrixXd by_output =
       SampleGradient(pass.output, noise, std::exp(log_temperature_), by_action) /
       static_cast<double>(n);
@@ -203,9 +245,7 @@ Decision SacAgent::Decide(int /*step*/, const History& history, Exploration expl
   const Eigen::MatrixXd input = Stacked(state, action);
   Decision decision;
   decision.action = limit_ * action.col(0);
-  decision.predicted_return =
-      normalisation_.reward_stddev *
-      std::min(critics_[0].Forward(input).output(0, 0), critics_[1].Forward(input).output(0, 0));
+  decision.predicted_return = normalisation_.reward_stddev * Ask(critics_, input).least(0);
   return decision;
 }
 

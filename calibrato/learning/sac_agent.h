@@ -9,13 +9,16 @@
 
 namespace calibrato {
 
-/// Soft actor critic (Haarnoja, Zhou, Abbeel, Levine, ICML 2018; with twin critics and the
-/// temperature learned, as in their "Soft actor-critic algorithms and applications", 2018):
-/// model-free, what the paper's conclusion proposes. It neither models dynamics nor searches.
+/// Soft actor critic (Haarnoja, Zhou, Abbeel, Levine, ICML 2018; with the temperature learned, as
+/// in their "Soft actor-critic algorithms and applications", 2018): model-free, what the paper's
+/// conclusion proposes. It neither models dynamics nor searches. Of five critics the least is
+/// believed (Chen, Wang, Zhou, Ross, "Randomized ensembled double Q-learning", ICLR 2021), and they
+/// are trained on noisy actions: the source says why.
 ///
 /// What it sees: the step, the observation and all actions so far, zeros for those to come. Returns
 /// are not discounted; an episode's last step is an end. Targets follow with a share of 0.005.
-/// Sizes, minibatches and learning rate are those of NetworkOptions.
+/// Minibatches are those of NetworkOptions; layers have a quarter of its units, and the learning
+/// rate is ten times its.
 class SacAgent final : public Agent {
  public:
   SacAgent(const LearnOptions& options, int observation_size, int horizon, Rng rng);
@@ -44,6 +47,9 @@ class SacAgent final : public Agent {
 
  private:
   struct Batch;
+  struct Opinions;
+  [[nodiscard]] static Opinions Ask(const std::vector<Perceptron>& critics,
+                                    const Eigen::MatrixXd& inputs);
   [[nodiscard]] Eigen::VectorXd State(const History& history) const;
   [[nodiscard]] Batch Draw(const ReplayMemory& memory, Rng& rng) const;
   double TrainCritics(const Batch& batch, Rng& rng);
@@ -56,7 +62,7 @@ class SacAgent final : public Agent {
   double learning_rate_;
   Normalisation normalisation_;
   Perceptron actor_;
-  std::vector<Perceptron> critics_;  // Two.
+  std::vector<Perceptron> critics_;  // Five.
   std::vector<Perceptron> targets_;  // Of the critics.
   double log_temperature_ = 0.0;
 };

@@ -11,8 +11,8 @@ namespace {
 LearnOptions SmallOptions() {
   LearnOptions options;
   options.planning.planner = "sac";
-  options.networks.hidden_size = 16;
-  options.networks.learning_rate = 3e-3;
+  options.networks.hidden_size = 64;
+  options.networks.learning_rate = 3e-4;
   return options;
 }
 

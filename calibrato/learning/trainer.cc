@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <deque>
@@ -13,14 +14,15 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
-#include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
 #include "calibrato/base/value.h"
 #include "calibrato/learning/agent.h"
+#include "calibrato/learning/byte_stream.h"
 #include "calibrato/learning/checkpoint.h"
 #include "calibrato/learning/episode.h"
 #include "calibrato/learning/policy.h"
 #include "calibrato/learning/training_log.h"
+#include "calibrato/learning/transition_bytes.h"
 
 namespace calibrato {
 namespace {
@@ -40,13 +42,64 @@ bool MakeFolder(const std::string& folder) {
   return is_new;
 }
 
-Checkpoint ReadCheckpoint(const std::string& folder) {
+// The first process reads it for all.
+Checkpoint ReadCheckpoint(const std::string& folder, Team& team) {
   const std::string path = CheckpointPath(folder);
-  if (!std::filesystem::exists(path)) {
-    throw InputError({"nothing to resume", path, "there is no such file",
-                      "leave out --resume, or give the --out of the run to continue"});
-  }
-  return CheckpointFromBytes(ReadFile(path, kMaxCheckpointBytes), path);
+  const std::string bytes = OfTheFirst(team, [&] {
+    if (!std::filesystem::exists(path)) {
+      throw InputError({"nothing to resume", path, "there is no such file",
+                        "leave out --resume, or give the --out of the run to continue"});
+    }
+    return ReadFile(path, kMaxCheckpointBytes);
+  });
+  return CheckpointFromBytes(bytes, path);
+}
+
+// What remains of an episode, in bytes that its process sends to the others.
+struct EpisodeSummary {
+  int64_t num_executed = 0;
+  double total_reward = 0.0;
+  double final_relative_error = 0.0;
+  std::string line;  // Of training.jsonl.
+  double carried_over = 0.0;
+};
+
+std::string ToBytes(const EpisodeSummary& summary) {
+  ByteWriter writer;
+  writer.Write(summary.num_executed);
+  writer.Write(summary.total_reward);
+  writer.Write(summary.final_relative_error);
+  writer.Write(std::string_view(summary.line));
+  writer.Write(summary.carried_over);
+  return writer.bytes();
+}
+
+EpisodeSummary SummaryFromBytes(std::string_view bytes) {
+  ByteReader reader(bytes, "the summary of an episode");
+  EpisodeSummary summary;
+  summary.num_executed = reader.ReadInt();
+  summary.total_reward = reader.ReadDouble();
+  summary.final_relative_error = reader.ReadDouble();
+  summary.line = reader.ReadText();
+  summary.carried_over = reader.ReadDouble();
+  reader.ExpectEnd();
+  return summary;
+}
+
+void Write(const Rng::State& state, ByteWriter& writer) {
+  writer.Write(static_cast<int64_t>(state.seed));
+  for (const uint64_t word : state.words) writer.Write(static_cast<int64_t>(word));
+  writer.Write(state.spare_normal);
+  writer.Write(int64_t{state.has_spare_normal ? 1 : 0});
+}
+
+Rng::State ReadRngState(ByteReader& reader) {
+  Rng::State state;
+  state.seed = static_cast<uint64_t>(reader.ReadInt());
+  for (uint64_t& word : state.words) word = static_cast<uint64_t>(reader.ReadInt());
+  state.spare_normal = reader.ReadDouble();
+  state.has_spare_normal = reader.ReadInt() != 0;
+  return state;
 }
 
 [[noreturn]] void FailResume(const std::string& folder, const std::string& why,
@@ -92,8 +145,9 @@ LearnOptions Resolved(LearnOptions options, const Checkpoint* checkpoint) {
 class Trainer {
  public:
   Trainer(const LearnOptions& options, Environment& environment, std::string folder,
-          const Checkpoint* checkpoint)
+          const Checkpoint* checkpoint, Team& team)
       : options_(options),
+        team_(team),
         environments_({&environment}),
         horizon_(environment.horizon()),
         folder_(std::move(folder)),
@@ -101,7 +155,7 @@ class Trainer {
         agent_(MakeAgent(options, environment.observation_size(), environment.horizon(),
                          rng_.Stream("weights"))),
         replay_memory_(static_cast<size_t>(options.replay_capacity)),
-        log_(folder_, FirstLines(checkpoint)) {
+        log_(folder_, FirstLines(checkpoint), team.is_first()) {
     for (int i = 1; i < options_.round; ++i) {
       clones_.push_back(environment.Clone());
       environments_.push_back(clones_.back().get());
@@ -117,7 +171,7 @@ class Trainer {
     Progress progress("learning", options_.num_episodes);
     progress.Advance(num_episodes_done_);
     while (true) {
-      if (interrupt != nullptr && interrupt->load()) {
+      if (AnyOf(team_, interrupt != nullptr && interrupt->load())) {
         SaveCheckpoint();
         return Ended(LearnTermination::kInterrupted, "interrupted after episode " +
                                                          std::to_string(num_episodes_done_) +
@@ -181,14 +235,16 @@ class Trainer {
     checkpoint.agent = agent_->Bytes();
     checkpoint.replay_memory = replay_memory_;
     checkpoint.training_jsonl = log_.lines();
-    WriteFileAtomically(CheckpointPath(folder_), ToBytes(checkpoint));
+    const std::string bytes = ToBytes(checkpoint);
+    ExpectAlike(team_, bytes);
+    if (team_.is_first()) WriteFileAtomically(CheckpointPath(folder_), bytes);
   }
 
   // Back to the last checkpoint, to go on with smaller steps: episodes meet the same rigs and draws
   // as before, and what the networks make of them differs.
   void RollBack(const std::string& divergence) {
     const int episode = num_episodes_done_ + 1;
-    const Checkpoint checkpoint = ReadCheckpoint(folder_);
+    const Checkpoint checkpoint = ReadCheckpoint(folder_, team_);
     [[maybe_unused]] const bool fits = agent_->Restore(checkpoint.agent, CheckpointPath(folder_));
     assert(fits);
     GoOnFrom(checkpoint);
@@ -205,17 +261,26 @@ class Trainer {
     SaveCheckpoint();
   }
 
-  static std::string Remark(const EpisodeRecord& record) {
+  static std::string Remark(const EpisodeSummary& summary) {
     char text[80];
-    std::snprintf(text, sizeof(text), "return %.3g  error %.3g %%", record.total_reward,
-                  100.0 * record.final_relative_error);
+    std::snprintf(text, sizeof(text), "return %.3g  error %.3g %%", summary.total_reward,
+                  100.0 * summary.final_relative_error);
     return text;
   }
 
-  void Account(const EpisodeRecord& record) {
-    num_calibrations_ += static_cast<int64_t>(record.executed.size());
-    best_return_ = std::max(best_return_, record.total_reward);
-    log_.Append(ToValue(record, num_episodes_done_, options_.stages[stage_].name));
+  // @param episode  Its number, from 1; that of the training episode before, of a test.
+  EpisodeSummary Summarised(const EpisodeRecord& record, int episode,
+                            const Environment& environment) const {
+    return {static_cast<int64_t>(record.executed.size()), record.total_reward,
+            record.final_relative_error,
+            ToJsonLine(ToValue(record, episode, options_.stages[stage_].name)),
+            environment.carried_over()};
+  }
+
+  void Account(const EpisodeSummary& summary) {
+    num_calibrations_ += summary.num_executed;
+    best_return_ = std::max(best_return_, summary.total_reward);
+    log_.Append(summary.line);
   }
 
   bool IsWarmUp() const { return num_episodes_done_ < *options_.num_warm_up_episodes; }
@@ -252,19 +317,45 @@ class Trainer {
 
   // One of the episodes that are played side by side.
   struct Seat {
-    Seat(Environment& environment, EpisodeKind kind, const Rng& environment_rng, Rng agent)
-        : agent_rng(agent), episode(environment, kind, environment_rng) {}
     Rng agent_rng;
-    Episode episode;
-    Decision decision;
-    std::optional<Transition> transition;
+    std::unique_ptr<Episode> episode;  // In the process whose turn it is; else null.
   };
+
+  // MapOver, its time taken.
+  std::vector<std::string> Divide(size_t n, const std::function<std::string(size_t)>& function) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<std::string> results = MapOver(team_, n, function);
+    divided_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return results;
+  }
 
   Decision DrawAction(Rng& rng) const {
     Decision decision;
     const double limit = options_.planning.swarm.limit;
     for (double& coefficient : decision.action) coefficient = rng.Uniform(-limit, limit);
     return decision;
+  }
+
+  // One step of one episode, in bytes: why it diverged, if it did; else what came of it.
+  std::string PlaySeat(int step, bool is_random, Seat& seat,
+                       const std::optional<TrainingLoss>& loss) const {
+    ByteWriter writer;
+    const auto diverged = [&] {
+      writer.Write(std::string_view(seat.episode->Record().divergence.value()));
+      return writer.bytes();
+    };
+    if (seat.episode->diverged()) return diverged();
+    Decision decision = is_random ? DrawAction(seat.agent_rng)
+                                  : agent_->Decide(step, seat.episode->history(),
+                                                   Exploration::kTraining, seat.agent_rng);
+    decision.loss = loss;
+    const std::optional<Transition> transition = seat.episode->Execute(decision);
+    if (seat.episode->diverged()) return diverged();
+    writer.Write(std::string_view());
+    Write(*transition, writer);
+    writer.Write(decision.best);
+    Write(seat.agent_rng.state(), writer);
+    return writer.bytes();
   }
 
   // One step of all episodes (Algorithm 1, lines 7 to 17). @return A divergence.
@@ -275,19 +366,20 @@ class Trainer {
         losses[i] = agent_->Train(replay_memory_, seats[i].agent_rng);
       }
     }
-    ParallelFor(seats.size(), [&](size_t i) {
-      Seat& seat = seats[i];
-      seat.decision = is_random ? DrawAction(seat.agent_rng)
-                                : agent_->Decide(step, seat.episode.history(),
-                                                 Exploration::kTraining, seat.agent_rng);
-      seat.decision.loss = losses[i];
-      seat.transition = seat.episode.Execute(seat.decision);
-    });
+    const std::vector<std::string> outcomes = Divide(
+        seats.size(), [&](size_t i) { return PlaySeat(step, is_random, seats[i], losses[i]); });
+    // What Remember() asks for.
     std::vector<Decision> decisions;
-    for (Seat& seat : seats) {
-      if (seat.episode.diverged()) return seat.episode.Record().divergence;
-      replay_memory_.Add(std::move(*seat.transition));
-      decisions.push_back(std::move(seat.decision));
+    for (size_t i = 0; i < seats.size(); ++i) {
+      ByteReader reader(outcomes[i], "the outcome of a step");
+      std::string divergence = reader.ReadText();
+      if (!divergence.empty()) return divergence;
+      replay_memory_.Add(ReadTransition(reader));
+      Decision& decision = decisions.emplace_back();
+      decision.action = replay_memory_[replay_memory_.size() - 1].action;
+      decision.best = reader.ReadMatrix();
+      seats[i].agent_rng.Restore(ReadRngState(reader));
+      reader.ExpectEnd();
     }
     if (!is_random) agent_->Remember(step, decisions);
     return std::nullopt;
@@ -300,29 +392,36 @@ class Trainer {
     const int end =
         is_random ? std::min(*options_.num_warm_up_episodes, FirstEpisode(options_, stage_ + 1))
                   : FirstEpisode(options_, stage_ + 1);
-    const int count = std::min(options_.round, end - num_episodes_done_);
+    const auto count = static_cast<size_t>(std::min(options_.round, end - num_episodes_done_));
     std::deque<Seat> seats;
-    for (int i = 0; i < count; ++i) {
-      const auto index = static_cast<uint64_t>(num_episodes_done_ + i);
-      Environment& environment = *environments_[static_cast<size_t>(i)];
-      environment.SetConditions(options_.stages[stage_].training);
-      seats.emplace_back(environment, is_random ? EpisodeKind::kRandom : EpisodeKind::kTraining,
-                         rng_.Stream("episode", index), rng_.Stream("agent", index));
-      if (seats.back().episode.diverged()) return seats.back().episode.Record().divergence;
+    for (size_t i = 0; i < count; ++i) {
+      const uint64_t index = static_cast<uint64_t>(num_episodes_done_) + i;
+      Seat& seat = seats.emplace_back(Seat{rng_.Stream("agent", index), nullptr});
+      if (!IsMine(team_, i)) continue;
+      environments_[i]->SetConditions(options_.stages[stage_].training);
+      seat.episode = std::make_unique<Episode>(
+          *environments_[i], is_random ? EpisodeKind::kRandom : EpisodeKind::kTraining,
+          rng_.Stream("episode", index));
     }
     for (int step = 0; step < horizon_; ++step) {
       if (auto divergence = PlayStep(step, is_random, seats)) return divergence;
     }
-    for (const Seat& seat : seats) {
-      const EpisodeRecord record = seat.episode.Record();
+    const std::vector<std::string> summaries = MapOver(team_, count, [&](size_t i) {
+      return ToBytes(Summarised(seats[i].episode->Record(),
+                                num_episodes_done_ + static_cast<int>(i) + 1, *environments_[i]));
+    });
+    for (size_t i = 0; i < count; ++i) {
+      const EpisodeSummary summary = SummaryFromBytes(summaries[i]);
       ++num_episodes_done_;
-      Account(record);
-      progress->Advance(1, Remark(record));
+      Account(summary);
+      if (!IsMine(team_, i)) environments_[i]->CarryOver(summary.carried_over);
+      progress->Advance(1, Remark(summary));
     }
     return std::nullopt;
   }
 
-  // The rig and the noise of every test are the same, so that tests compare with each other.
+  // The rig and the noise of every test are the same, so that tests compare with each other. Every
+  // process plays it: there is but one, and the others would wait.
   // @return A divergence.
   std::optional<std::string> PlayTest() {
     Rng agent_rng = rng_.Stream("test agent", static_cast<uint64_t>(num_episodes_done_));
@@ -338,7 +437,7 @@ class Trainer {
     }
     const EpisodeRecord record = episode.Record();
     if (record.divergence) return record.divergence;
-    Account(record);
+    Account(Summarised(record, num_episodes_done_, environment));
     KeepIfBest(record);
     return std::nullopt;
   }
@@ -361,7 +460,7 @@ class Trainer {
   // swarm finds what the model overrates. Nothing where the carrier refused every action of every
   // test.
   void WriteStagePolicy(const std::string& name) const {
-    if (best_test_actions_.cols() == 0) return;
+    if (best_test_actions_.cols() == 0 || !team_.is_first()) return;
     Policy policy;
     policy.task = options_.task;
     policy.preset = options_.preset;
@@ -391,6 +490,7 @@ class Trainer {
     result.num_calibrations = num_calibrations_;
     result.num_rollbacks = num_rollbacks_;
     result.best_return = best_return_;
+    result.divided_s = divided_s_;
     result.termination = termination;
     result.termination_text = std::move(text);
     return result;
@@ -442,6 +542,7 @@ class Trainer {
   static constexpr double kRollbackFactor = 0.5;
 
   const LearnOptions options_;
+  Team& team_;
   std::vector<Environment*> environments_;  // As many as a round has episodes.
   std::vector<std::unique_ptr<Environment>> clones_;
   const int horizon_;
@@ -454,6 +555,7 @@ class Trainer {
   int num_episodes_done_ = 0;
   int64_t num_calibrations_ = 0;
   int num_rollbacks_ = 0;
+  double divided_s_ = 0.0;
   double best_return_ = -std::numeric_limits<double>::infinity();
   double best_test_return_ = 0.0;
   Eigen::MatrixXd best_test_actions_{LoopCoefficients::RowsAtCompileTime, 0};
@@ -476,17 +578,19 @@ std::string LearnTerminationName(LearnTermination termination) {
 }
 
 LearnResult Learn(const LearnOptions& options, Environment& environment, const std::string& folder,
-                  const std::atomic<bool>* interrupt) {
+                  const std::atomic<bool>* interrupt, Team* team) {
+  Alone alone;
+  Team& those = team != nullptr ? *team : alone;
   CheckOptions(Resolved(options, nullptr));
   std::optional<Checkpoint> checkpoint;
-  if (options.resume) checkpoint = ReadCheckpoint(folder);
+  if (options.resume) checkpoint = ReadCheckpoint(folder, those);
   const Checkpoint* const start = checkpoint ? &*checkpoint : nullptr;
   const LearnOptions resolved = Resolved(options, start);
   if (start != nullptr) CheckSameCourse(*start, resolved, folder);
-  const bool is_new = MakeFolder(folder);
+  const bool is_new = those.is_first() && MakeFolder(folder);
   std::optional<Trainer> trainer;
   try {
-    trainer.emplace(resolved, environment, folder, start);
+    trainer.emplace(resolved, environment, folder, start, those);
   } catch (const InputError&) {
     // The disk was full before anything was learned: leave nothing behind.
     std::error_code ignored;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "calibrato/learning/learn_options.h"
+#include "calibrato/learning/team.h"
 #include "calibrato/mdp/environment.h"
 #include "calibrato/motion/motion.h"
 
@@ -27,6 +28,8 @@ struct LearnResult {
   int64_t num_information_evaluations = 0;  ///< Candidate motions judged without calibrating.
   int num_rollbacks = 0;     ///< How often it diverged and went back to its last checkpoint.
   double best_return = 0.0;  ///< The highest of any episode, tests included.
+  /// Wall time of what processes divide among them: the rest is each one's own [s].
+  double divided_s = 0.0;
   LearnTermination termination = LearnTermination::kDone;
   /// For people, one line: "training diverged at episode 37, dynamics loss not finite: ...".
   std::string termination_text;
@@ -52,17 +55,19 @@ struct LearnResult {
 ///     policy-NAME/    see policy.h, at the end of each stage but the last
 ///     policy/         at the end of the last
 ///
-/// The same options give the same bytes in all of them, for any number of threads, and whether or
-/// not the run was interrupted, killed at any moment, and resumed. A finished run can be resumed
-/// with more episodes: with rounds of one episode, or where its episodes fill whole rounds, that is
-/// the run that had been longer from the start.
+/// The same options give the same bytes in all of them, for any number of threads and processes,
+/// and whether or not the run was interrupted, killed at any moment, and resumed. A finished run
+/// can be resumed with more episodes: with rounds of one episode, or where its episodes fill whole
+/// rounds, that is the run that had been longer from the start.
 ///
 /// @param environment  Of which further ones are cloned for rounds of several episodes.
-/// @param interrupt  May be null. Once true, the run stops after the running round.
+/// @param interrupt  May be null. Once true, in any process, the run stops after the running round.
+/// @param team  Null: this process alone. Else all of them call this with the same options, divide
+///     the episodes of each round among them, and have the same result; the first writes.
 /// @throws InputError if an option is out of range, the folder can't be written, or the checkpoint
 ///     to resume from is missing, damaged, or of other options (which it names).
 [[nodiscard]] LearnResult Learn(const LearnOptions& options, Environment& environment,
                                 const std::string& folder,
-                                const std::atomic<bool>* interrupt = nullptr);
+                                const std::atomic<bool>* interrupt = nullptr, Team* team = nullptr);
 
 }  // namespace calibrato

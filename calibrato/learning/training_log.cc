@@ -7,14 +7,15 @@
 
 namespace calibrato {
 
-TrainingLog::TrainingLog(const std::string& folder, std::string lines)
-    : path_(folder + "/training.jsonl") {
+TrainingLog::TrainingLog(const std::string& folder, std::string lines, bool writes)
+    : path_(folder + "/training.jsonl"), writes_(writes) {
   Rewind(std::move(lines));
 }
 
-void TrainingLog::Append(const Value& line) {
-  const std::string text = ToJsonLine(line) + "\n";
+void TrainingLog::Append(const std::string& json_line) {
+  const std::string text = json_line + "\n";
   lines_ += text;
+  if (!writes_) return;
   file_ << text << std::flush;
   if (!file_) {
     throw InputError(
@@ -23,8 +24,9 @@ void TrainingLog::Append(const Value& line) {
 }
 
 void TrainingLog::Rewind(std::string lines) {
-  file_.close();
   lines_ = std::move(lines);
+  if (!writes_) return;
+  file_.close();
   WriteFileAtomically(path_, lines_);
   file_.open(path_, std::ios::binary | std::ios::app);
 }

@@ -11,10 +11,12 @@ namespace calibrato {
 class TrainingLog {
  public:
   /// Begins with these lines. @throws InputError if the file can't be written.
-  TrainingLog(const std::string& folder, std::string lines);
+  /// @param writes  False: no file, since another process writes it.
+  TrainingLog(const std::string& folder, std::string lines, bool writes = true);
 
   /// @throws InputError if the disk is full.
-  void Append(const Value& line);
+  void Append(const Value& line) { Append(ToJsonLine(line)); }
+  void Append(const std::string& json_line);
   /// Forgets all lines but these.
   void Rewind(std::string lines);
 
@@ -22,6 +24,7 @@ class TrainingLog {
 
  private:
   std::string path_;
+  bool writes_;
   std::string lines_;
   std::ofstream file_;
 };

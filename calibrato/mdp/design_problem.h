@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -46,7 +47,12 @@ struct ExpectedLoss {
   std::vector<LoopGradient> gradient;  ///< One a loop; empty unless asked for.
 };
 
-/// Costs one information evaluation a rig (two for the joint task).
+/// How many information evaluations the expected loss of one motion takes: one for each rig and set
+/// of parameters (the joint task has two), with or without its gradient. What all planners are
+/// counted by.
+[[nodiscard]] int64_t NumEvaluations(const MotionDesignProblem& problem);
+
+/// Costs NumEvaluations.
 [[nodiscard]] ExpectedLoss ExpectLoss(const MotionDesignProblem& problem, const Motion& motion,
                                       bool want_gradient = false);
 

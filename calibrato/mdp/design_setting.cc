@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "calibrato/mdp/frames_that_count.h"
-#include "calibrato/motion/paper_scene.h"
 
 namespace calibrato {
 
@@ -19,8 +18,9 @@ Rig AsEstimated(Rig rig) {
   return rig;
 }
 
-std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws, const Rng& rng) {
-  std::vector<Rig> rigs = {AsEstimated(PaperRig())};
+std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws, const Rng& rng,
+                              const Rig& nominal) {
+  std::vector<Rig> rigs = {AsEstimated(nominal)};
   const Eigen::Vector3d middle_w = rigs.front().T_w_g * BoardCentre(rigs.front().board);
   for (int i = 0; i < num_draws; ++i) {
     Rng draw = rng.Stream("believed rig", static_cast<uint64_t>(i));

@@ -5,6 +5,7 @@
 #include "calibrato/base/rng.h"
 #include "calibrato/motion/carrier.h"
 #include "calibrato/motion/motion.h"
+#include "calibrato/motion/paper_scene.h"
 #include "calibrato/sensors/rig.h"
 #include "calibrato/simulation/rig_distribution.h"
 
@@ -16,12 +17,12 @@ namespace calibrato {
 /// parameters (those it lacks 0), other lenses as they are.
 [[nodiscard]] Rig AsEstimated(Rig rig);
 
-/// What a distribution lets one believe: the paper's nominal rig, then draws, as estimated. Their
-/// mounts are the paper's, and the middles of their boards where the paper's is, since a motion is
-/// planned anew before each board (BeforeBoard).
+/// What a distribution lets one believe: the nominal rig, then draws, all as estimated. The draws'
+/// mounts are the nominal rig's, and the middles of their boards where its board has it, since a
+/// motion is planned anew before each board (BeforeBoard).
 /// @param num_draws  >= 0
 [[nodiscard]] std::vector<Rig> BelievedRigs(RigDistribution distribution, int num_draws,
-                                            const Rng& rng);
+                                            const Rng& rng, const Rig& nominal = PaperRig());
 
 /// What was planned in the paper's scene, planned anew before a board that stands elsewhere
 /// (BasePoseBeforeBoard); shrunk where it does not fit there.

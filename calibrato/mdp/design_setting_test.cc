@@ -34,6 +34,18 @@ TEST(BelievedRigs, BeginWithTheNominalOne) {
   EXPECT_NE(rigs[1].cameras[0].model.parameters(), rigs[2].cameras[0].model.parameters());
 }
 
+TEST(BelievedRigs, StandBeforeTheBoardOfTheNominalOne) {
+  Rig nominal = PaperRig();
+  nominal.T_w_g.t += Eigen::Vector3d(0.1, -0.2, 0.05);
+  nominal.T_e_c0.t.x() += 0.03;
+  const Eigen::Vector3d middle_w = nominal.T_w_g * BoardCentre(nominal.board);
+  const auto rigs = BelievedRigs(RigDistribution::kBroad, 3, Rng(5), nominal);
+  for (const Rig& rig : rigs) {
+    EXPECT_LT((rig.T_w_g * BoardCentre(rig.board) - middle_w).norm(), 1e-12);
+    EXPECT_EQ(rig.T_e_c0.t, nominal.T_e_c0.t);
+  }
+}
+
 // Numbers of the paper, and the stretching of its first loop by 2 rad/s.
 TEST(BudgetOf, IsThatOfTheExecution) {
   const MotionBudget budget = BudgetOf(HandcraftedMotion(Task::kIntrinsic), PaperRig());

@@ -39,6 +39,11 @@ ExpectedLoss Expect(const MotionDesignProblem& problem, const Rig& rig, Task tas
 
 }  // namespace
 
+int64_t NumEvaluations(const MotionDesignProblem& problem) {
+  const int64_t num_tasks = problem.task == Task::kJoint ? 2 : 1;
+  return num_tasks * static_cast<int64_t>(problem.rigs.size());
+}
+
 ExpectedLoss ExpectLoss(const MotionDesignProblem& problem, const Motion& motion,
                         bool want_gradient) {
   assert(!problem.rigs.empty());

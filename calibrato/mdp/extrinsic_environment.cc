@@ -28,7 +28,7 @@ Eigen::VectorXd ExtrinsicEnvironment::Reset(const Rng& rng) {
     Rng rigs = rng.Stream("rig");
     rig_ = DrawRig(task_.rigs, rigs);
   }
-  base_pose_ = task_.fixed_rig ? BasePose() : BasePoseBeforeBoard(rig_);
+  base_pose_ = BasePoseBeforeBoard(rig_);
   noise_ = rng.Stream("noise");
   num_steps_ = 0;
   num_frames_ = 0;

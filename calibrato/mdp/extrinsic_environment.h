@@ -31,6 +31,7 @@ struct ExtrinsicRewardWeights {
 
 /// Where the episodes of the extrinsic task take place.
 struct ExtrinsicTask {
+  int num_loops = NumLoops(Task::kExtrinsic);  ///< Of an episode, T >= 1.
   Carrier carrier = Carrier::kFree;
   Fidelity fidelity = Fidelity::kFast;
   RigDistribution rigs = RigDistribution::kPaper;
@@ -59,7 +60,7 @@ class ExtrinsicEnvironment final : public Environment {
     return std::make_unique<ExtrinsicEnvironment>(*this);
   }
   [[nodiscard]] int observation_size() const override { return 12; }
-  [[nodiscard]] int horizon() const override { return NumLoops(Task::kExtrinsic); }
+  [[nodiscard]] int horizon() const override { return task_.num_loops; }
   void SetConditions(const EpisodeConditions& conditions) override { conditions_ = conditions; }
   Eigen::VectorXd Reset(const Rng& rng) override;
   StepResult Step(const LoopCoefficients& action) override;

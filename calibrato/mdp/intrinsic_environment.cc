@@ -20,7 +20,7 @@ Eigen::VectorXd IntrinsicEnvironment::Reset(const Rng& rng) {
     Rng rigs = rng.Stream("rig");
     rig_ = DrawRig(task_.rigs, rigs);
   }
-  base_pose_ = task_.fixed_rig ? BasePose() : BasePoseBeforeBoard(rig_);
+  base_pose_ = BasePoseBeforeBoard(rig_);
   noise_ = rng.Stream("noise");
   num_steps_ = 0;
   now_ = Time();

@@ -31,6 +31,7 @@ struct IntrinsicRewardWeights {
 
 /// Where the episodes of the intrinsic task take place.
 struct IntrinsicTask {
+  int num_loops = NumLoops(Task::kIntrinsic);  ///< Of an episode, T >= 1.
   Carrier carrier = Carrier::kFree;
   Fidelity fidelity = Fidelity::kFast;
   RigDistribution rigs = RigDistribution::kPaper;
@@ -60,13 +61,16 @@ class IntrinsicEnvironment final : public Environment {
     return std::make_unique<IntrinsicEnvironment>(*this);
   }
   [[nodiscard]] int observation_size() const override { return 8; }
-  [[nodiscard]] int horizon() const override { return NumLoops(Task::kIntrinsic); }
+  [[nodiscard]] int horizon() const override { return task_.num_loops; }
   void SetConditions(const EpisodeConditions& conditions) override { conditions_ = conditions; }
   Eigen::VectorXd Reset(const Rng& rng) override;
   StepResult Step(const LoopCoefficients& action) override;
   [[nodiscard]] double relative_error() const override { return status_.relative_error; }
   [[nodiscard]] double carried_over() const override;
-  void CarryOver(double carried_over) override { carried_coverage_ = carried_over; }
+  void CarryOver(double carried_over) override {
+    carried_coverage_ = carried_over;
+    num_steps_ = 0;  // Whatever was played here does not count.
+  }
 
  private:
   void Record(const TimedMotion& motion, const Rng& noise);

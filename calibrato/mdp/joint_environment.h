@@ -28,6 +28,7 @@ struct JointRewardWeights {
 
 /// Where the episodes of the joint task take place.
 struct JointTask {
+  int num_loops = NumLoops(Task::kJoint);  ///< Of an episode, T >= 1.
   Carrier carrier = Carrier::kFree;
   Fidelity fidelity = Fidelity::kFast;
   RigDistribution rigs = RigDistribution::kPaper;
@@ -55,7 +56,7 @@ class JointEnvironment final : public Environment {
     return std::make_unique<JointEnvironment>(*this);
   }
   [[nodiscard]] int observation_size() const override { return 20; }
-  [[nodiscard]] int horizon() const override { return NumLoops(Task::kJoint); }
+  [[nodiscard]] int horizon() const override { return task_.num_loops; }
   void SetConditions(const EpisodeConditions& conditions) override { conditions_ = conditions; }
   Eigen::VectorXd Reset(const Rng& rng) override;
   StepResult Step(const LoopCoefficients& action) override;

@@ -87,7 +87,7 @@ class Objective {
 
     VectorXd by_motion = VectorXd::Zero(size());
     const ExpectedLoss expected = ExpectLoss(problem_, motion_, true);
-    num_evaluations_ += static_cast<int64_t>(problem_.rigs.size());
+    num_evaluations_ += NumEvaluations(problem_);
     double value = expected.value;
     for (int i = 0; i < num_free_; ++i) {
       Add(i, expected.gradient[LoopIndex(i)], 1.0, &by_motion);
@@ -204,14 +204,17 @@ std::optional<MotionDesign> DesignMotion(const MotionDesignProblem& problem, con
       design.loss = loss;
     }
   }
-  design.num_information_evaluations =
-      objective.num_evaluations() + 3 * static_cast<int64_t>(problem.rigs.size());
+  design.num_information_evaluations = objective.num_evaluations() + 3 * NumEvaluations(problem);
   return design;
 }
 
 std::optional<MotionDesign> DesignFromManyStarts(const MotionDesignProblem& problem,
-                                                 const MultistartOptions& options, const Rng& rng) {
+                                                 const MultistartOptions& options, const Rng& rng,
+                                                 const DesignMany& design_many) {
   assert(options.num_starts >= 1);
+  const DesignMany by_threads = [](size_t n, const auto& design) {
+    return ParallelMap<std::optional<MotionDesign>>(n, design);
+  };
   std::optional<MotionDesign> best;
   int64_t num_evaluations = 0;
   const auto keep_better = [&](std::optional<MotionDesign> design) {
@@ -219,7 +222,7 @@ std::optional<MotionDesign> DesignFromManyStarts(const MotionDesignProblem& prob
     num_evaluations += design->num_information_evaluations;
     if (!best || design->loss < best->loss) best = std::move(design);
   };
-  for (auto& design : ParallelMap<std::optional<MotionDesign>>(
+  for (auto& design : (design_many ? design_many : by_threads)(
            static_cast<size_t>(options.num_starts), [&](size_t k) {
              Rng draw = rng.Stream("start", k);
              Motion start = RandomMotion(problem.task, draw);

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <vector>
 
 #include "calibrato/base/rng.h"
 #include "calibrato/mdp/design_problem.h"
@@ -22,7 +24,7 @@ struct MotionDesignOptions {
 struct MotionDesign {
   Motion motion;      ///< Within the problem's limits, with the durations that it takes.
   double loss = 0.0;  ///< ExpectLoss of it.
-  int64_t num_information_evaluations = 0;  ///< Candidate motions x rigs.
+  int64_t num_information_evaluations = 0;  ///< As NumEvaluations counts.
 };
 
 /// Improves a motion until nothing more is gained or the evaluations are used up. Variables are
@@ -44,10 +46,15 @@ struct MultistartOptions {
   int evaluations_of_best = 600;
 };
 
+/// What design(0), .., design(n - 1) give, in this order.
+using DesignMany = std::function<std::vector<std::optional<MotionDesign>>(
+    size_t n, const std::function<std::optional<MotionDesign>(size_t)>& design)>;
+
 /// DesignMotion from several starts, and once more from the best: the planner `fisher`.
+/// @param design_many  Who designs from the starts; by default the threads of this process.
 /// @return nothing if nothing is learned from any start.
-[[nodiscard]] std::optional<MotionDesign> DesignFromManyStarts(const MotionDesignProblem& problem,
-                                                               const MultistartOptions& options,
-                                                               const Rng& rng);
+[[nodiscard]] std::optional<MotionDesign> DesignFromManyStarts(
+    const MotionDesignProblem& problem, const MultistartOptions& options, const Rng& rng,
+    const DesignMany& design_many = nullptr);
 
 }  // namespace calibrato

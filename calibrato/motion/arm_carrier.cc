@@ -68,24 +68,35 @@ Refusal OutOfReach(const Rigid3& T_b_e) {
   return refusal;
 }
 
+// Of the first joint that leaves its range.
+std::optional<Refusal> CheckRange(const JointRange& taken, const JointRange& range) {
+  Refusal refusal;
+  refusal.unit = "rad";
+  for (int i = 0; i < taken.lower.size(); ++i) {
+    const std::string joint = "joint " + std::to_string(i + 1);
+    refusal.value = taken.lower[i];
+    refusal.limit = joint + " lower limit";
+    refusal.bound = range.lower[i];
+    if (!(refusal.value >= refusal.bound)) return refusal;
+    refusal.value = taken.upper[i];
+    refusal.limit = joint + " upper limit";
+    refusal.bound = range.upper[i];
+    if (!(refusal.value <= refusal.bound)) return refusal;
+  }
+  return std::nullopt;
+}
+
 std::optional<Refusal> CheckJoints(const JointPath& path, const JointRange& range, size_t loop,
                                    int way_point) {
   const JointVector& q = path.At(loop, way_point);
+  if (std::optional<Refusal> refusal = CheckRange({q, q}, range)) return refusal;
   const JointVector& before = path.At(loop, way_point - 1);
   Refusal refusal;
   refusal.unit = "rad";
+  refusal.bound = kMaxJointStep;
   for (int i = 0; i < q.size(); ++i) {
-    const std::string joint = "joint " + std::to_string(i + 1);
-    refusal.value = q[i];
-    refusal.limit = joint + " lower limit";
-    refusal.bound = range.lower[i];
-    if (!(q[i] >= refusal.bound)) return refusal;
-    refusal.limit = joint + " upper limit";
-    refusal.bound = range.upper[i];
-    if (!(q[i] <= refusal.bound)) return refusal;
-    refusal.limit = joint + " step between way-points";
+    refusal.limit = "joint " + std::to_string(i + 1) + " step between way-points";
     refusal.value = std::abs(q[i] - before[i]);
-    refusal.bound = kMaxJointStep;
     if (!(refusal.value <= refusal.bound)) return refusal;
   }
   return std::nullopt;
@@ -114,11 +125,20 @@ std::optional<Refusal> CheckWayPoints(size_t num_loops, const Check& check) {
   return first;
 }
 
+std::vector<LoopJointSpline> SplinesThrough(const JointPath& path) {
+  std::vector<LoopJointSpline> splines;
+  for (size_t loop = 0; loop < path.loops.size(); ++loop) splines.emplace_back(path, loop);
+  return splines;
+}
+
+// At every way-point and between them.
 bool FitsLimits(const JointPath& path, const JointRange& range) {
-  const auto fits = [&](const JointVector& q) { return JointLimitExcess(q, range) <= 0.0; };
-  return fits(path.start) && std::ranges::all_of(path.loops, [&](const JointPath::Loop& loop) {
-           return std::ranges::all_of(loop, fits);
-         });
+  return std::ranges::all_of(SplinesThrough(path), [&](const LoopJointSpline& spline) {
+    for (int i = 1; i <= kNumWayPoints; ++i) {
+      if (CheckRange(spline.RangeOnTheWayTo(i), range)) return false;
+    }
+    return true;
+  });
 }
 
 // Walls before the joint limits, each nearer and steeper than the one before it.
@@ -147,23 +167,41 @@ JointRange RangeOf(const ArmLimits& limits) {
           .upper = Limits().upper.cwiseMin(limits.joint_upper)};
 }
 
-// With one wall after the other, from `first_cost` on, until the path fits.
+// The range, narrower by what the joints need beyond it.
+JointRange Narrowed(const JointRange& range, const JointPath& path) {
+  JointRange narrowed = range;
+  for (const LoopJointSpline& spline : SplinesThrough(path)) {
+    for (int i = 1; i <= kNumWayPoints; ++i) {
+      const JointRange taken = spline.RangeOnTheWayTo(i);
+      narrowed.lower = narrowed.lower.cwiseMax(2.0 * range.lower - taken.lower);
+      narrowed.upper = narrowed.upper.cwiseMin(2.0 * range.upper - taken.upper);
+    }
+  }
+  return narrowed;
+}
+
+// With one wall after the other, from `first_cost` on, until the path fits. Last, where it runs
+// along a limit and swings beyond it between way-points, the way-points draw back by as much.
 JointPath Refined(const PosePath& poses, JointPath path, const JointPathCosts& costs,
                   size_t first_cost) {
   for (size_t i = first_cost; i < costs.size(); ++i) {
     path = RefineJointPath(poses, path, costs[i]);
-    if (FitsLimits(path, costs[i].range)) break;
+    if (FitsLimits(path, costs[i].range)) return path;
   }
-  return path;
+  JointPathCost cost = costs.back();
+  cost.range = Narrowed(cost.range, path);
+  JointPath drawn_back = RefineJointPath(poses, path, cost);
+  return FitsLimits(drawn_back, costs.back().range) ? drawn_back : path;
 }
 
-// How far the last joint turns from its start.
-std::optional<Refusal> CheckWristTurn(const JointPath& path, const ArmLimits& limits, size_t loop,
-                                      int way_point) {
+// How far the last joint turns from its start, on the way to a way-point.
+std::optional<Refusal> CheckWristTurn(const LoopJointSpline& spline, const JointVector& start,
+                                      const ArmLimits& limits, int way_point) {
+  const JointRange taken = spline.RangeOnTheWayTo(way_point);
   Refusal refusal;
   refusal.limit = "turn of the wrist";
   refusal.unit = "rad";
-  refusal.value = std::abs(path.At(loop, way_point)[6] - path.start[6]);
+  refusal.value = std::max(start[6] - taken.lower[6], taken.upper[6] - start[6]);
   refusal.bound = limits.max_wrist_turn;
   if (refusal.value <= refusal.bound) return std::nullopt;
   return refusal;
@@ -193,13 +231,14 @@ void NameSingularity(const JointVector& q, Refusal* step) {
   step->remedy = kAwayFromSingularity;
 }
 
-std::optional<Refusal> CheckLimitsAndSteps(const JointPath& path, const JointRange& range,
-                                           size_t loop, int way_point) {
+// At a way-point, and on the way to it.
+std::optional<Refusal> CheckLimitsAndSteps(const JointPath& path, const LoopJointSpline& spline,
+                                           const JointRange& range, size_t loop, int way_point) {
   std::optional<Refusal> refusal = CheckJoints(path, range, loop, way_point);
   if (refusal && refusal->bound == kMaxJointStep) {
     for (const int end : {way_point, way_point - 1}) NameSingularity(path.At(loop, end), &*refusal);
   }
-  return refusal;
+  return refusal ? refusal : CheckRange(spline.RangeOnTheWayTo(way_point), range);
 }
 
 // Where no path gets along: of all ways to stand there within the limits, and where it comes from,
@@ -276,14 +315,14 @@ class Selection {
   void Try(const JointPath& candidate, const JointPathCosts& costs, size_t first_cost) {
     JointPath path = Refined(poses_, candidate, costs, first_cost);
     const size_t num_loops = motion_.loops.size();
-    std::optional<Refusal> refusal = CheckWayPoints(
-        num_loops, [&](size_t loop, int i) { return CheckLimitsAndSteps(path, range_, loop, i); });
+    const std::vector<LoopJointSpline> splines = SplinesThrough(path);
+    std::optional<Refusal> refusal = CheckWayPoints(num_loops, [&](size_t loop, int i) {
+      return CheckLimitsAndSteps(path, splines[loop], range_, loop, i);
+    });
     if (!refusal) {
       // Only of a path that the joints can go.
-      std::vector<LoopJointSpline> splines;
-      for (size_t loop = 0; loop < num_loops; ++loop) splines.emplace_back(path, loop);
       refusal = CheckWayPoints(num_loops, [&](size_t loop, int i) {
-        std::optional<Refusal> at_way_point = CheckWristTurn(path, limits_, loop, i);
+        std::optional<Refusal> at_way_point = CheckWristTurn(splines[loop], path.start, limits_, i);
         if (!at_way_point) at_way_point = CheckSingularity(path, loop, i);
         return at_way_point ? at_way_point
                             : CheckClearance(splines[loop], clearance_, limits_.clearance_m, i);

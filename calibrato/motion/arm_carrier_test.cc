@@ -47,10 +47,12 @@ double LeastExcess(const Rigid3& T_b_e) {
   return least;
 }
 
-int NumBeyondLimits(const Loop& loop) {
+// Of so many instants from one way-point to the next.
+int NumBeyondLimits(const Loop& loop, int instants_per_way_point = 1) {
   int count = 0;
-  for (int i = 1; i <= kNumWayPoints; ++i) {
-    count += LeastExcess(LoopPoseAt(BasePose(), loop.coefficients, WayPointPhase(i))) > 1e-4;
+  for (int i = 1; i <= kNumWayPoints * instants_per_way_point; ++i) {
+    const double theta = WayPointPhase(1) * i / instants_per_way_point;
+    count += LeastExcess(LoopPoseAt(BasePose(), loop.coefficients, theta)) > 1e-4;
   }
   return count;
 }
@@ -116,12 +118,13 @@ TEST(ArmCarrier, ScalesTheIntrinsicHandcraftedMotionToTheLargestFactorThatAnyJoi
   Motion motion = OnArm(HandcraftedMotion(Task::kIntrinsic));
   motion.loops.erase(motion.loops.begin(), motion.loops.end() - 1);
   const TimedMotion timed = PlanScaledToFit(motion, PaperRig());
-  EXPECT_NEAR(timed.scale, 0.8799, 1e-3);
+  EXPECT_NEAR(timed.scale, 0.8773, 1e-3);
   ExpectJointPathFollowsTheMotion(timed);
-  // Some way-point of a motion larger by the tolerance has no joint angles within the limits.
+  // Somewhere on the way, if not at a way-point, a motion larger by the tolerance has no joint
+  // angles within the limits.
   Loop larger = timed.motion.loops[0];
   larger.coefficients *= 1.0 + 2e-3;
-  EXPECT_GT(NumBeyondLimits(larger), 0);
+  EXPECT_GT(NumBeyondLimits(larger, 4), 0);
 }
 
 TEST(ArmCarrier, RefusesPosesOutOfReach) {
@@ -300,6 +303,51 @@ TEST(ArmCarrier, KeepsTheUsersJointLimits) {
   // An elbow that can't bend enough: the pose decides its angle, nothing gives way.
   rig.arm_limits.joint_lower[3] = -1.0;
   ExpectRefusal(motion, rig, "joint 4 lower limit");
+}
+
+// The most that the elbow can bend at a pose, whatever the redundancy does.
+double MostBentElbow(const Rigid3& T_b_e) {
+  constexpr int kGridSize = 1000;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kGridSize; ++i) {
+    const double q7 = Limits().lower[6] + (Limits().upper[6] - Limits().lower[6]) * i / kGridSize;
+    for (const JointVector& q : PandaInverse(T_b_e, q7)) {
+      if (JointLimitExcess(q) <= 0.0) least = std::min(least, q[3]);
+    }
+  }
+  return least;
+}
+
+TEST(ArmCarrier, KeepsJointLimitsBetweenWayPointsToo) {
+  // The arm reaches out farthest half-way between way-points 15 and 16.
+  Motion motion = OneLoop(1, 0.05);
+  motion.loops[0].coefficients[4] = 0.04;
+  const auto elbow_at = [&](double way_point) {
+    return MostBentElbow(
+        LoopPoseAt(motion.base_pose, motion.loops[0].coefficients, WayPointPhase(1) * way_point));
+  };
+  const double at_way_points = elbow_at(16.0);
+  const double between = elbow_at(15.5);
+  ASSERT_GT(between, at_way_points + 2e-3);
+  for (int i = 0; i < kNumWayPoints; ++i) ASSERT_LE(elbow_at(i), at_way_points);
+  Rig rig = PaperRig();
+  rig.arm_limits.joint_upper[3] = 0.5 * (at_way_points + between);
+  const auto plan = PlanMotion(motion, rig);
+  ASSERT_TRUE(std::holds_alternative<Refusal>(plan));
+  const Refusal& refusal = std::get<Refusal>(plan);
+  EXPECT_EQ(refusal.limit, "joint 4 upper limit");
+  EXPECT_EQ(refusal.way_point, 16);
+  EXPECT_EQ(refusal.num_bad_way_points, 1);
+  EXPECT_NEAR(refusal.value, between, 1e-3);
+  // A little above it there is a path, and it stays below all the time.
+  rig.arm_limits.joint_upper[3] = between + 1e-3;
+  const auto higher = PlanMotion(motion, rig);
+  ASSERT_TRUE(std::holds_alternative<TimedMotion>(higher)) << std::get<Refusal>(higher).Describe();
+  const TimedMotion& timed = std::get<TimedMotion>(higher);
+  const JointTrajectory trajectory(timed);
+  for (double t_s = 0.0; t_s < timed.duration_s(); t_s += 1e-3) {
+    ASSERT_LE(trajectory.At(t_s).position[3], rig.arm_limits.joint_upper[3]) << t_s;
+  }
 }
 
 TEST(ArmCarrier, KeepsTheWristFromTurningTooFar) {

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 namespace calibrato {
 namespace {
@@ -88,6 +89,36 @@ JointMotion LoopJointSpline::At(const Phase& phase) const {
           .acceleration = second * (rate * rate) + first * phase.second,
           .jerk = third * (rate * rate * rate) + second * (3.0 * rate * phase.second) +
                   first * phase.third};
+}
+
+JointRange LoopJointSpline::RangeOnTheWayTo(int way_point) const {
+  assert(way_point >= 1 && way_point <= kNumWayPoints);
+  const int to = way_point - 1;
+  const int from = (to + kNumWayPoints - 1) % kNumWayPoints;
+  JointRange range;
+  for (int i = 0; i < 7; ++i) {
+    const double p0 = joints_(from, i);
+    const double p1 = joints_(to, i);
+    const double m0 = kSpacing * kSpacing * second_(from, i);
+    const double m1 = kSpacing * kSpacing * second_(to, i);
+    // p0 + slope u + m0 u^2 / 2 + (m1 - m0) u^3 / 6 for u in [0, 1].
+    const double slope = p1 - p0 - (2.0 * m0 + m1) / 6.0;
+    range.lower[i] = std::min(p0, p1);
+    range.upper[i] = std::max(p0, p1);
+    const auto include = [&](double u) {
+      if (!(u > 0.0 && u < 1.0)) return;
+      const double p = p0 + u * (slope + u * (0.5 * m0 + u * (m1 - m0) / 6.0));
+      range.lower[i] = std::min(range.lower[i], p);
+      range.upper[i] = std::max(range.upper[i], p);
+    };
+    // Where slope + m0 u + (m1 - m0) u^2 / 2 vanishes, in the form that does not cancel.
+    const double discriminant = m0 * m0 - 2.0 * (m1 - m0) * slope;
+    if (!(discriminant >= 0.0)) continue;
+    const double q = -(m0 + std::copysign(std::sqrt(discriminant), m0));
+    include(q / (m1 - m0));
+    include(2.0 * slope / q);
+  }
+  return range;
 }
 
 JointTrajectory::JointTrajectory(const TimedMotion& motion) {

@@ -26,6 +26,9 @@ class LoopJointSpline {
  public:
   LoopJointSpline(const JointPath& path, size_t loop);
   [[nodiscard]] JointMotion At(const Phase& phase) const;
+  /// The lowest and the highest angle of each joint on the way to way-point 1 .. 62 from the one
+  /// before it, both included: a spline swings beyond its way-points.
+  [[nodiscard]] JointRange RangeOnTheWayTo(int way_point) const;
 
  private:
   // One row a way-point, 1 to 62.

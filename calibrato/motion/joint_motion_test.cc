@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
+#include "calibrato/base/rng.h"
 #include "calibrato/geometry/so3.h"
 #include "calibrato/motion/paper_scene.h"
+#include "calibrato/motion/way_point.h"
 
 namespace calibrato {
 namespace {
@@ -45,6 +48,52 @@ TEST(CarrierStateOf, DerivativesAgreeWithDifferences) {
             .norm(),
         1e-8);
   }
+}
+
+// A loop whose joints jump to and fro by up to 0.4 rad from way-point to way-point.
+JointPath RestlessPath() {
+  JointPath path;
+  Rng rng(1);
+  const auto draw = [&] {
+    JointVector q;
+    for (double& x : q) x = 0.4 * rng.Uniform();
+    return q;
+  };
+  path.start = draw();
+  for (JointVector& q : path.loops.emplace_back()) q = draw();
+  return path;
+}
+
+TEST(LoopJointSpline, SaysHowFarItSwingsBeyondItsWayPoints) {
+  const JointPath path = RestlessPath();
+  const LoopJointSpline spline(path, 0);
+  double farthest = 0.0;
+  for (int i = 1; i <= kNumWayPoints; ++i) {
+    const JointRange range = spline.RangeOnTheWayTo(i);
+    JointRange sampled{path.At(0, i), path.At(0, i)};
+    constexpr int kNumSamples = 1000;
+    for (int k = 0; k <= kNumSamples; ++k) {
+      const double theta = WayPointPhase(i - 1) + WayPointPhase(1) * k / kNumSamples;
+      const JointVector q = spline.At({theta, 0.0, 0.0, 0.0}).position;
+      sampled.lower = sampled.lower.cwiseMin(q);
+      sampled.upper = sampled.upper.cwiseMax(q);
+    }
+    EXPECT_LT((range.lower - sampled.lower).cwiseAbs().maxCoeff(), 1e-5) << i;
+    EXPECT_LT((range.upper - sampled.upper).cwiseAbs().maxCoeff(), 1e-5) << i;
+    EXPECT_LE((range.lower - sampled.lower).maxCoeff(), 1e-12) << i;
+    const JointVector highest_end = path.At(0, i).cwiseMax(path.At(0, i - 1));
+    farthest = std::max(farthest, (range.upper - highest_end).maxCoeff());
+  }
+  EXPECT_GT(farthest, 0.05);
+}
+
+TEST(LoopJointSpline, StandsWhereItsWayPointsAreOne) {
+  JointPath path;
+  path.start = JointVector::Constant(0.3);
+  path.loops.emplace_back().fill(path.start);
+  const JointRange range = LoopJointSpline(path, 0).RangeOnTheWayTo(1);
+  EXPECT_LT((range.lower - path.start).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((range.upper - path.start).cwiseAbs().maxCoeff(), 1e-15);
 }
 
 TEST(JointTrajectory, StaysOnTheLoopsBetweenWayPoints) {

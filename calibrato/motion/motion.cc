@@ -103,10 +103,11 @@ Motion MotionFromValue(const Value& value, std::vector<std::string>* warnings) {
                    "write timing: quintic or timing: optimal");
     }
   }
-  const Value& base_pose = value.At("base_pose");
-  AppendUnknownKeys(base_pose, {"xyz_m", "rpy_rad"}, warnings);
-  motion.base_pose.xyz_m = VectorFromValue(base_pose.At("xyz_m"));
-  motion.base_pose.rpy_rad = VectorFromValue(base_pose.At("rpy_rad"));
+  if (const Value* base_pose = value.Find("base_pose")) {
+    AppendUnknownKeys(*base_pose, {"xyz_m", "rpy_rad"}, warnings);
+    motion.base_pose.xyz_m = VectorFromValue(base_pose->At("xyz_m"));
+    motion.base_pose.rpy_rad = VectorFromValue(base_pose->At("rpy_rad"));
+  }
   const Value& loops = value.At("loops");
   constexpr size_t kMaxLoops = 1000;
   if (loops.elements().empty() || loops.size() > kMaxLoops) {

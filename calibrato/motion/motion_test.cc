@@ -73,7 +73,6 @@ TEST(MotionYaml, RefusesWhatIsNoMotionAndNamesTheKey) {
       {"0.25,", "11.0,", "coefficients"},   {"0.25,", ".nan,", "coefficients"},
       {"5.0", "0.0", "duration_s"},         {"5.0", "-1.0", "duration_s"},
       {"duration_s", "time", "duration_s"}, {"xyz_m", "position", "xyz_m"},
-      {"base_pose", "start", "base_pose"},
   };
   for (const auto& [piece, replacement, key] : cases) {
     try {
@@ -147,6 +146,15 @@ TEST(HandcraftedMotion, HasTheOriginalsExcursions) {
   EXPECT_NEAR(motion.loops[2].coefficients[2], -0.102, 1e-12);   // x
   EXPECT_NEAR(motion.loops[3].coefficients[31], -0.255, 1e-12);  // yaw
   EXPECT_EQ(HandcraftedMotion(Task::kExtrinsic).loops.size(), 3u);
+}
+
+TEST(MotionYaml, WithoutABasePoseHasThePapersAndNamesAKeyThatWasMeantForIt) {
+  std::vector<std::string> warnings;
+  const Motion motion =
+      MotionFromValue(ParseYaml(FileWith("base_pose", "base_pos"), "motion.yaml"), &warnings);
+  EXPECT_EQ(motion.base_pose, BasePose());
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("did you mean base_pose"), std::string::npos) << warnings[0];
 }
 
 }  // namespace

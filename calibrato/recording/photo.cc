@@ -102,4 +102,16 @@ std::string EncodePng(const RgbImage& image) {
   return Encoded(bgr);
 }
 
+std::string EncodeJpeg(const GreyImage& image) {
+  constexpr int kQuality = 70;
+  const cv::Mat grey(image.resolution.height, image.resolution.width, CV_8UC1,
+                     const_cast<uint8_t*>(image.pixels.data()));  // NOLINT
+  std::vector<uint8_t> bytes;
+  if (!cv::imencode(".jpg", grey, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality})) {
+    throw InputError({"cannot encode an image", "", "OpenCV cannot encode JPEG",
+                      "install libopencv-imgcodecs with JPEG"});
+  }
+  return {bytes.begin(), bytes.end()};
+}
+
 }  // namespace calibrato

@@ -26,4 +26,8 @@ namespace calibrato {
 [[nodiscard]] std::string EncodePng(const GreyImage& image);
 [[nodiscard]] std::string EncodePng(const RgbImage& image);
 
+/// The content of a JPEG, small enough to be sent ten times a second: to be looked at, not
+/// measured.
+[[nodiscard]] std::string EncodeJpeg(const GreyImage& image);
+
 }  // namespace calibrato

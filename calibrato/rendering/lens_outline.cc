@@ -99,10 +99,15 @@ Vector3d LensOutline::InCamera(const Vector2d& p_g) const {
   Vector3d p_c = T_c_g_ * p;
   if (!pose_of_row_) return p_c;
   // Each pass leaves as much of the error as a point moves, in rows, while one row is read.
-  constexpr int kNumPasses = 4;
+  constexpr int kMaxPasses = 50;
+  constexpr double kConverged = 1e-6;  // [px]
   const double height = camera_.resolution.height;
-  for (int i = 0; i < kNumPasses; ++i) {
-    p_c = pose_of_row_(std::clamp(PixelOf(p_c).y(), -height, 2.0 * height)) * p;
+  double row = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMaxPasses; ++i) {
+    const double before = row;
+    row = std::clamp(PixelOf(p_c).y(), -height, 2.0 * height);
+    if (std::abs(row - before) < kConverged) break;
+    p_c = pose_of_row_(row) * p;
   }
   return p_c;
 }

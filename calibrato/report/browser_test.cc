@@ -68,7 +68,7 @@ TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
   const std::string drawn =
       Draw({CameraDocumentForTest(), CameraImuDocumentForTest(), CheckDocumentForTest(),
             NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest(),
-            ParetoDocumentForTest()});
+            ParetoDocumentForTest(), CameraImuDiffDocumentForTest(), MergeDocumentForTest()});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "plot-failed"));
   EXPECT_FALSE(Says(drawn, "class=\"empty\""));
@@ -100,6 +100,13 @@ TEST_F(DrawnPage, DrawsEveryPartOfEveryKind) {
                    "0.26 to 0.358), over 40 rigs: better, and more than chance."));
   EXPECT_TRUE(Says(drawn, "3 rows of 60 trials, of which 3 failed."));
   EXPECT_TRUE(Says(drawn, "Extrinsic error against path"));
+  EXPECT_TRUE(Says(drawn, "The motions, played"));
+  EXPECT_TRUE(Says(drawn, "The learned motion, played"));
+  EXPECT_TRUE(Says(drawn, "0.0 of 20 s"));
+  EXPECT_TRUE(Says(drawn, "The two results differ, and by more than chance."));
+  EXPECT_TRUE(Says(drawn, "Cam0: 0.163 px at 1 rad/s."));
+  EXPECT_TRUE(Says(drawn, "3 recordings lie further apart than their covariances say."));
+  EXPECT_TRUE(Says(drawn, "Cam0 lens: sigmas times 2.12."));
   // Every plot can be taken along.
   EXPECT_TRUE(Says(drawn, "<div class=\"save\"><button type=\"button\">CSV</button>"));
   const std::string console = Console();
@@ -122,7 +129,8 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
             Value::Object().Set("kind", "learn"), broken, Value::Object().Set("kind", "table1"),
             Value::Object().Set("kind", "camera-imu"), Value::Object().Set("kind", "diff"),
             Value::Object().Set("kind", "check"), Value::Object().Set("kind", "noise"),
-            Value::Object().Set("kind", "rivals"), Value::Object().Set("kind", "evaluation")});
+            Value::Object().Set("kind", "rivals"), Value::Object().Set("kind", "evaluation"),
+            Value::Object().Set("kind", "merge")});
   EXPECT_TRUE(Says(drawn, "data-state=\"drawn\""));
   EXPECT_FALSE(Says(drawn, "undefined"));
   EXPECT_TRUE(Says(drawn, "This page cannot draw results of kind “horoscope”."));
@@ -134,6 +142,7 @@ TEST_F(DrawnPage, SaysInWordsWhatItCannotDraw) {
   EXPECT_TRUE(Says(drawn, "Nothing was compared."));
   EXPECT_TRUE(Says(drawn, "There is no estimate."));
   EXPECT_TRUE(Says(drawn, "No camera was compared."));
+  EXPECT_TRUE(Says(drawn, "Nothing was merged."));
   EXPECT_FALSE(Says(drawn, "<b id="));
   EXPECT_TRUE(Says(drawn, "&lt;b id="));
 }

@@ -101,6 +101,20 @@ Value Distortion() {
 }
 
 // The camera's path: loops of two harmonics around the start, of this size [m].
+// A camera that swings before the board at the end of an arm with one elbow.
+Value Played(double size) {
+  Value camera = Value::Array();
+  Value arm = Value::Array();
+  for (int k = 0; k <= 200; ++k) {
+    const double x = 0.45 + size * std::sin(0.1 * k);
+    camera.Append(Numbers({Rounded(x), 0.05, 0.5, 0.0, 0.7071, 0.0, 0.7071}));
+    arm.Append(Numbers({0.0, 0.0, 0.0, 0.1, 0.0, 0.7, Rounded(x), 0.05, 0.55}));
+  }
+  Value played = Value::Object();
+  played.Set("step_s", 0.1).Set("camera_b", camera).Set("arm_b", arm);
+  return played;
+}
+
 Value Motion(const std::string& policy, double size, double path_length_m) {
   Value loops = Value::Array();
   Value axes = Value::Array();
@@ -126,7 +140,8 @@ Value Motion(const std::string& policy, double size, double path_length_m) {
                        .Set("path_length_m", path_length_m)
                        .Set("motion_s", 20.0)
                        .Set("loops", loops)
-                       .Set("axis_b", axes));
+                       .Set("axis_b", axes)
+                       .Set("played", Played(size)));
 }
 
 Value BoardOutline() {

@@ -8,6 +8,8 @@ namespace calibrato {
 Value CameraDocumentForTest();
 Value CameraImuDocumentForTest();
 Value CheckDocumentForTest();
+Value CameraImuDiffDocumentForTest();
+Value MergeDocumentForTest();
 Value NoiseDocumentForTest();
 Value LearnDocumentForTest();
 Value Table1DocumentForTest();

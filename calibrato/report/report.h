@@ -47,7 +47,8 @@ namespace calibrato {
 ///      "motions": [{"policy", "path_length_m", "motion_s",
 ///                   "loops": [[[x, y, z]..]..],  the camera in frame b, a polyline a loop [m]
 ///                   "xyz_b": [[x, y, z]..],      instead of loops
-///                   "axis_b": [..]}..],          optical axes, see below
+///                   "axis_b": [..],              optical axes, see below
+///                   "played": {..}}..],          evaluation/motion_drawing.h
 ///      "coverage": [{"policy", "pixels": [[u, v]..]}..],
 ///      "resolution": [width, height],
 ///      "board_outline_b": [[x, y, z] four times]}

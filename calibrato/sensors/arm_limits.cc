@@ -14,6 +14,21 @@ void AppendUnknown(const Value& value, const std::vector<std::string>& known,
   warnings->insert(warnings->end(), unknown.begin(), unknown.end());
 }
 
+// One limit a joint; null for a joint without.
+JointVector LimitsFromValue(const Value& value, double none) {
+  JointVector limits = JointVector::Constant(none);
+  const Value::Elements& joints = value.elements();
+  if (joints.size() != 7) {
+    value.Fail("bad joint limits", "there must be seven, found " + std::to_string(joints.size()),
+               "write one number a joint, or null for a joint without a limit");
+  }
+  for (Eigen::Index i = 0; i < 7; ++i) {
+    const Value& limit = joints[static_cast<size_t>(i)];
+    if (!limit.IsNull()) limits[i] = limit.AsDouble();
+  }
+  return limits;
+}
+
 KeepOutBox KeepOutFromValue(const Value& value, std::vector<std::string>* warnings) {
   AppendUnknown(value, {"name", "T_b_box", "size_m"}, warnings);
   KeepOutBox box;
@@ -36,10 +51,10 @@ ArmLimits ArmLimitsFromValue(const Value& value, std::vector<std::string>* warni
       warnings);
   ArmLimits limits;
   if (const Value* x = value.Find("joint_lower_rad")) {
-    limits.joint_lower = JointVector(x->AsDoubles(7).data());
+    limits.joint_lower = LimitsFromValue(*x, -std::numeric_limits<double>::infinity());
   }
   if (const Value* x = value.Find("joint_upper_rad")) {
-    limits.joint_upper = JointVector(x->AsDoubles(7).data());
+    limits.joint_upper = LimitsFromValue(*x, std::numeric_limits<double>::infinity());
   }
   if (!((limits.joint_upper - limits.joint_lower).minCoeff() > 0.0)) {
     value.Fail("bad joint limits", "each lower limit must be below the upper one",
@@ -57,10 +72,11 @@ ArmLimits ArmLimitsFromValue(const Value& value, std::vector<std::string>* warni
 
 Value ToValue(const ArmLimits& limits) {
   Value value = Value::Object();
-  if (limits.joint_lower.allFinite()) {
+  // Infinities are written as null.
+  if (limits.joint_lower.array().isFinite().any()) {
     value.Set("joint_lower_rad", Value::Numbers(limits.joint_lower));
   }
-  if (limits.joint_upper.allFinite()) {
+  if (limits.joint_upper.array().isFinite().any()) {
     value.Set("joint_upper_rad", Value::Numbers(limits.joint_upper));
   }
   value.Set("max_wrist_turn_rad", limits.max_wrist_turn).Set("clearance_m", limits.clearance_m);

@@ -98,6 +98,13 @@ Rig RigFromValue(const Value& value, std::vector<std::string>* warnings) {
   if (const Value* images = value.Find("images")) {
     rig.image_disturbances = ImageDisturbancesFromValue(*images, warnings);
   }
+  if (!(rig.image_disturbances.line_delay_s * rig.cameras.front().resolution.height <=
+        1.0 / rig.camera_rate_hz)) {
+    value.At("images")
+        .At("line_delay_s")
+        .Fail("too slow a rolling shutter", "an image is not read before the next one begins",
+              "write the seconds from one row to the next, or a lower rate_hz");
+  }
   if (const Value* arm = value.Find("arm")) {
     if (warnings != nullptr) {
       const std::vector<std::string> unknown =

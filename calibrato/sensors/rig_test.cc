@@ -116,6 +116,8 @@ TEST(Rig, SizesOfEffectsOutOfTheirRangeAreErrorsWithTheirKey) {
         std::tuple("finger_reach_m: 0.2", "finger_reach_m: -1", "finger_reach_m"),
         std::tuple("phase_error_px: 0.04", "phase_error_px: .nan", "phase_error_px"),
         std::tuple("rms_px: 0.1", "rms_px: 100", "rms_px"),
+        // 480 rows of 9e-5 s take longer than one of 25 images a second.
+        std::tuple("line_delay_s: 3.0e-05", "line_delay_s: 9.0e-05", "line_delay_s"),
         std::tuple("exposure_variation: 0.5", "exposure_variation: 1.1", "exposure_variation")}) {
     std::string changed = text;
     const size_t at = changed.find(from);
@@ -128,6 +130,16 @@ TEST(Rig, SizesOfEffectsOutOfTheirRangeAreErrorsWithTheirKey) {
       EXPECT_NE(std::string(error.what()).find(key), std::string::npos) << error.what();
     }
   }
+}
+
+TEST(Rig, JointLimitsOfSomeJointsReadBack) {
+  Rig rig = MakeRig();
+  rig.arm_limits = {};
+  rig.arm_limits.joint_lower[3] = -2.0;
+  rig.arm_limits.joint_upper[6] = 1.0;
+  const Rig read = RigFromValue(ParseYaml(ToYaml(ToValue(rig)), "rig.yaml"), nullptr);
+  EXPECT_EQ(read.arm_limits.joint_lower, rig.arm_limits.joint_lower);
+  EXPECT_EQ(read.arm_limits.joint_upper, rig.arm_limits.joint_upper);
 }
 
 TEST(Rig, AnArmThatSwingsFasterThanItIsSimulatedIsAnError) {

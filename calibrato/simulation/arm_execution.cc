@@ -76,6 +76,19 @@ void CheckState(const JointVector& q, double t_s) {
   }
 }
 
+// MuJoCo counts what it warns of, and goes on: with a state that it has set back, or with motors
+// that it has switched off.
+void CheckWarnings(const mjData* data, double t_s) {
+  for (int kind = 0; kind < mjNWARNING; ++kind) {
+    const mjWarningStat& warning = data->warning[kind];
+    if (warning.number == 0) continue;
+    throw InputError(
+        {"the arm does not follow the motion", "",
+         std::string(mju_warningText(kind, warning.lastinfo)) + " at " + std::to_string(t_s) + " s",
+         "make the motion slower or smaller"});
+  }
+}
+
 Eigen::Vector2d TrackingError(const JointVector& q, const Rigid3& wanted) {
   const Eigen::Matrix<double, 6, 1> error = PandaPose(q, nullptr).DifferenceTo(wanted);
   return {error.tail<3>().norm(), error.head<3>().norm()};
@@ -177,6 +190,7 @@ ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig, const TimedMoti
     Eigen::Map<JointVector>(data->ctrl) = cut;
     Eigen::Map<JointVector>(data->qfrc_applied) = ripple;
     mj_step2(model, data);
+    CheckWarnings(data, t_s);
     execution.position.push_back(q);
     execution.gyro.emplace_back(Eigen::Map<const Vector3d>(data->sensordata + gyro));
     execution.accel.emplace_back(Eigen::Map<const Vector3d>(data->sensordata + accel));

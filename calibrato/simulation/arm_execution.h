@@ -45,7 +45,8 @@ struct ArmExecutionOptions {
 ///
 /// The rig's arm_disturbances ripple the torques and let the links swing on their gears; both move
 /// camera and IMU together, and the truth is what the links did.
-/// @throws InputError if the arm does not follow: a joint limit is broken, or the state diverges.
+/// @throws InputError if the arm does not follow: a joint limit is broken, or MuJoCo warns or gives
+/// up (a state that diverges, no memory).
 [[nodiscard]] ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig,
                                         const TimedMotion& motion, Rng& rng,
                                         const ArmExecutionOptions& options = {});

@@ -1,6 +1,7 @@
 #include "calibrato/simulation/arm_execution.h"
 
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,39 @@ TEST(ArmExecution, TracksRandomMotions) {
     ExpectTracked(
         Execute(OnArm(RandomMotion(i % 2 == 0 ? Task::kIntrinsic : Task::kExtrinsic, rng))));
   }
+}
+
+// What is thrown instead of an execution; empty if nothing is.
+std::string RefusalOn(const ArmScene& scene, const ArmControl& control) {
+  Rng rng(1);
+  try {
+    (void)ExecuteOnArm(scene, PaperRig(), Handcrafted(), rng, {.control = &control});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// MuJoCo itself would end the program.
+TEST(ArmExecution, SaysWhatMujocoGivesUpAt) {
+  const ArmScene scene(PaperRig());
+  const auto stack = scene.data()->nstack;
+  scene.data()->nstack = 50;
+  const std::string refusal = RefusalOn(scene, PandaControl());
+  EXPECT_NE(refusal.find("MuJoCo gives up"), std::string::npos) << refusal;
+  EXPECT_EQ(refusal.find('\n'), std::string::npos) << refusal;
+  // And goes on with the next one.
+  scene.data()->nstack = stack;
+  EXPECT_EQ(RefusalOn(scene, PandaControl()), "");
+}
+
+// MuJoCo itself would warn, switch the motors off or set the arm back, and go on.
+TEST(ArmExecution, RefusesWhatMujocoWarnsOf) {
+  ArmControl broken = PandaControl();
+  broken.proportional[2] = std::nan("");
+  const std::string refusal = RefusalOn(ArmScene(PaperRig()), broken);
+  EXPECT_NE(refusal.find("the arm does not follow the motion"), std::string::npos) << refusal;
+  EXPECT_NE(refusal.find("at 0.000000 s"), std::string::npos) << refusal;
 }
 
 TEST(ArmExecution, AtRestTheImuFeelsGravityAlone) {

@@ -4,8 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <mutex>
 #include <string>
@@ -27,21 +25,32 @@ using Eigen::Vector3d;
 
 constexpr const char* kFileName = "scene.xml";
 
+std::string OneLine(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
 InputError BadScene(const std::string& why) {
   return InputError({"bad scene of the arm", "models/panda.xml", why,
                      "take the file as it comes with calibrato"});
 }
 
+// Else MuJoCo writes warnings into a file where it runs, and at an error waits for a key and ends
+// the program. What it warns of while the arm moves it counts as well (arm_execution.cc).
+void TakeOverWarningsAndErrors() {
+  static std::once_flag done;
+  std::call_once(done, [] {
+    mju_user_warning = [](const char*) {};
+    mju_user_error = [](const char* what) {
+      throw InputError({"MuJoCo gives up", "", OneLine(what), "--fidelity fast does without it"});
+    };
+  });
+}
+
 mjModel* Compiled(std::string_view xml) {
-  // MuJoCo keeps the file that it read last, and its handlers, for all threads.
+  // MuJoCo keeps the file that it read last for all threads.
   static std::mutex reading;
   const std::scoped_lock alone(reading);
-  // Else MuJoCo writes warnings into a file where it runs, and at an error waits for a key.
-  mju_user_warning = [](const char*) {};
-  mju_user_error = [](const char* what) {
-    std::fprintf(stderr, "MuJoCo: %s\n", what);
-    std::abort();
-  };
   if (xml.empty()) throw BadScene("it is empty");
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
@@ -53,9 +62,7 @@ mjModel* Compiled(std::string_view xml) {
   mjModel* model = mj_loadXML(kFileName, files.get(), error.data(), static_cast<int>(error.size()));
   mj_deleteVFS(files.get());
   if (model == nullptr) {
-    std::string why = error.data();
-    std::replace(why.begin(), why.end(), '\n', ' ');
-    throw BadScene(why);
+    throw BadScene(OneLine(error.data()));
   }
   return model;
 }
@@ -111,7 +118,9 @@ std::string_view ArmSceneXml() {
   return {calibrato_arm_scene, static_cast<size_t>(calibrato_arm_scene_end - calibrato_arm_scene)};
 }
 
-ArmScene::ArmScene(const Rig& rig, std::string_view xml) : model_(Compiled(xml)) {
+ArmScene::ArmScene(const Rig& rig, std::string_view xml) {
+  TakeOverWarningsAndErrors();
+  model_ = Compiled(xml);
   try {
     for (int i = 1; i <= 7; ++i) {
       const std::string number = std::to_string(i);
@@ -126,11 +135,11 @@ ArmScene::ArmScene(const Rig& rig, std::string_view xml) : model_(Compiled(xml))
     (void)IdOf(model_, mjOBJ_BODY, "flange");
     if (model_->nq != 7 || model_->nu != 7) throw BadScene("it must have seven joints");
     PlaceRig(rig, model_);
+    data_ = mj_makeData(model_);
   } catch (...) {
     mj_deleteModel(model_);
     throw;
   }
-  data_ = mj_makeData(model_);
 }
 
 ArmScene::~ArmScene() {

@@ -108,9 +108,13 @@ class CornerCamera {
     const double line_delay_s = rig_.image_disturbances.line_delay_s;
     // A point lies where the row that it falls on sees it: each pass leaves as much of the error as
     // a point moves, in rows, while one row is read.
-    constexpr int kNumPasses = 3;
-    for (int i = 0; i < kNumPasses && line_delay_s > 0.0 && pixel; ++i) {
-      const double row = std::clamp(pixel->y(), 0.0, 1.0 * camera_.resolution.height);
+    constexpr int kMaxPasses = 50;
+    constexpr double kConverged = 1e-6;  // [px]
+    double row = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < kMaxPasses && line_delay_s > 0.0 && pixel; ++i) {
+      const double before = row;
+      row = std::clamp(pixel->y(), 0.0, 1.0 * camera_.resolution.height);
+      if (std::abs(row - before) < kConverged) break;
       pixel = camera_.model.Project(BoardInCamera(rig_, path_, t_s + line_delay_s * row) *
                                     points_g_.col(k));
     }
@@ -178,7 +182,7 @@ SimulatedFrames SimulateFrames(const Rig& rig, const CarrierPath& path, Time sta
       continue;
     }
     BoardView view;
-    view.stamp = start + elapsed + Duration::FromSeconds(images.stamp_jitter_s * arrival.Normal());
+    view.stamp = start + elapsed + Duration::FromSeconds(StampJitter(rig, arrival.Normal()));
     view.name = std::to_string(view.stamp.nanoseconds());
     view.points_g = camera.points_g()(Eigen::all, seen->ids);
     view.corner_ids = std::move(seen->ids);

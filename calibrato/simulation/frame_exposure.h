@@ -14,4 +14,9 @@ struct FrameExposure {
 /// unless the exposure varies (ImageDisturbances::exposure_variation).
 [[nodiscard]] FrameExposure ExposureOfFrame(const Rig& rig, double stamp_s);
 
+/// How much later than that it is stamped [s], for one draw of the standard normal distribution:
+/// stamp_jitter_s times it, cut off at 0.45 of the time between two frames. So stamps stay in the
+/// order of their frames, whatever the jitter.
+[[nodiscard]] double StampJitter(const Rig& rig, double normal);
+
 }  // namespace calibrato

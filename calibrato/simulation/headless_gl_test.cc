@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -32,11 +33,42 @@ TEST(HeadlessGl, EveryWayDraws) {
   EXPECT_NE(RunInItsOwnProcess("MUJOCO_GL=off", test), 0);
 }
 
-// An EGL that finds no driver.
+// In a folder of its own, until it goes.
+class Folder {
+ public:
+  explicit Folder(const std::string& name)
+      : path_(std::filesystem::path(testing::TempDir()) / (name + std::to_string(getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// What the test that draws says of how.
+std::string WayIn(const std::string& environment) {
+  const Folder folder("way_");
+  const std::string said = (folder.path() / "said").string();
+  EXPECT_EQ(RunInItsOwnProcess(environment, "SceneView.DepthIsAlongTheAxisInMetres", said), 0);
+  const std::string text = ReadFile(said, 1'000'000);
+  const std::string before = "drawn by ";
+  const size_t at = text.find(before);
+  if (at == std::string::npos) return text;
+  return text.substr(at + before.size(), text.find('\n', at) - at - before.size());
+}
+
 TEST(HeadlessGl, FallsBackToOsMesa) {
-  EXPECT_EQ(RunInItsOwnProcess("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json",
-                               "SceneView.DepthIsAlongTheAxisInMetres"),
-            0);
+  EXPECT_EQ(WayIn("MUJOCO_GL="), "egl");
+  // An EGL that finds no driver.
+  EXPECT_EQ(WayIn("__EGL_VENDOR_LIBRARY_FILENAMES=/nowhere.json"), "osmesa");
+  // None at all: a library of its name that is none, in front of the system's.
+  const Folder folder("no_egl_");
+  std::ofstream(folder.path() / "libEGL.so.1") << "none";
+  EXPECT_EQ(WayIn("LD_LIBRARY_PATH='" + folder.path().string() + "'"), "osmesa");
 }
 
 TEST(HeadlessGl, SaysWhatIsMissing) {
@@ -53,19 +85,18 @@ TEST(HeadlessGl, SaysWhatIsMissing) {
 
 // Libraries of these names that are none, in front of those of the system.
 TEST(HeadlessGl, WithoutEglAndOsMesaOnlyImagesAreMissing) {
-  const std::filesystem::path folder =
-      std::filesystem::path(testing::TempDir()) / ("no_gl_" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  for (const char* name : {"libEGL.so.1", "libOSMesa.so.8"}) std::ofstream(folder / name) << "none";
-  const std::string environment = "LD_LIBRARY_PATH='" + folder.string() + "'";
-  const std::filesystem::path said = folder / "said";
+  const Folder folder("no_gl_");
+  for (const char* name : {"libEGL.so.1", "libOSMesa.so.8"}) {
+    std::ofstream(folder.path() / name) << "none";
+  }
+  const std::string environment = "LD_LIBRARY_PATH='" + folder.path().string() + "'";
+  const std::filesystem::path said = folder.path() / "said";
   EXPECT_NE(RunInItsOwnProcess(environment, "SceneView.DepthIsAlongTheAxisInMetres", said), 0);
   EXPECT_NE(ReadFile(said.string(), 1'000'000)
                 .find("libEGL.so.1 is not installed; libOSMesa.so.8 is not installed"),
             std::string::npos)
       << ReadFile(said.string(), 1'000'000);
   EXPECT_EQ(RunInItsOwnProcess(environment, "SimulateRun.ThePhysicalArmComesClose*"), 0);
-  std::filesystem::remove_all(folder);
 }
 
 TEST(HeadlessGlWays, FollowTheEnvironment) {
@@ -81,6 +112,7 @@ TEST(HeadlessGlWays, FollowTheEnvironment) {
 // the base.
 TEST(SceneView, DepthIsAlongTheAxisInMetres) {
   const HeadlessGl gl;
+  std::printf("drawn by %s\n", gl.way().c_str());
   const ArmScene scene(PaperRig());
   SceneView view(scene, gl);
   Rigid3 T_w_c{Eigen::Matrix3d::Zero(), {-2.0, 0.9, 1.4}};

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -118,22 +119,39 @@ class PinholeSampler {
   float scale_y_;
 };
 
-// Where the camera is while a row is exposed, around one instant of the first row's exposure:
-// parabolas through three rows, near enough for the hundredth of a second that an image is read.
+// Where the camera is while a row is exposed, around one instant of the first row's exposure, from
+// one height above the image to one below it: parabolas through three rows, one after the other.
+// For the 4 ms of one, an arm that swings at 30 Hz is near enough to it.
 PoseOfRow PosesOfRows(const std::function<Rigid3(double t_s)>& pose_at, double t_s,
                       double line_delay_s, int height) {
-  const Rigid3 first = pose_at(t_s);
-  if (line_delay_s == 0.0) return [first](double) { return first; };
-  const double half = 0.5 * height;
-  const Rigid3 middle = pose_at(t_s + half * line_delay_s);
-  const Eigen::Matrix<double, 6, 1> before = first.DifferenceTo(middle);
-  const Eigen::Matrix<double, 6, 1> after =
-      pose_at(t_s + 2.0 * half * line_delay_s).DifferenceTo(middle);
-  const Eigen::Matrix<double, 6, 1> slope = 0.5 * (after - before);
-  const Eigen::Matrix<double, 6, 1> bend = 0.5 * (after + before);
-  return [middle, slope, bend, half](double row) {
-    const double s = row / half - 1.0;
-    return middle.Perturbed(s * slope + s * s * bend);
+  if (line_delay_s == 0.0) return [first = pose_at(t_s)](double) { return first; };
+  constexpr double kMaxPiece = 0.004;  // [s]
+  struct Piece {
+    Rigid3 middle;
+    Eigen::Matrix<double, 6, 1> slope;
+    Eigen::Matrix<double, 6, 1> bend;
+  };
+  const double first_row = -height;
+  const int num_pieces = static_cast<int>(std::ceil(3.0 * height * line_delay_s / kMaxPiece));
+  const double rows = 3.0 * height / num_pieces;
+  const auto pieces = std::make_shared<std::vector<Piece>>();
+  const auto pose_of = [&](double row) { return pose_at(t_s + line_delay_s * row); };
+  Rigid3 first = pose_of(first_row);
+  for (int i = 0; i < num_pieces; ++i) {
+    const Rigid3 middle = pose_of(first_row + (i + 0.5) * rows);
+    const Rigid3 last = pose_of(first_row + (i + 1.0) * rows);
+    const Eigen::Matrix<double, 6, 1> before = first.DifferenceTo(middle);
+    const Eigen::Matrix<double, 6, 1> after = last.DifferenceTo(middle);
+    pieces->push_back({middle, 0.5 * (after - before), 0.5 * (after + before)});
+    first = last;
+  }
+  return [pieces, first_row, rows](double row) {
+    const double position = (row - first_row) / rows;
+    const auto last = static_cast<int>(pieces->size()) - 1;
+    const int i = std::clamp(static_cast<int>(position), 0, last);
+    const Piece& piece = (*pieces)[static_cast<size_t>(i)];
+    const double s = 2.0 * (position - i) - 1.0;
+    return piece.middle.Perturbed(s * piece.slope + s * s * piece.bend);
   };
 }
 
@@ -297,7 +315,7 @@ int SimulateImages(const Rig& rig, const CarrierPath& path, Time start, const Rn
     Rng noise = rng.Stream("image", static_cast<uint64_t>(k));
     // Drawn for every setting alike.
     const bool is_dropped = noise.Uniform() < rig.image_disturbances.drop_probability;
-    const double jitter_s = rig.image_disturbances.stamp_jitter_s * noise.Normal();
+    const double jitter_s = StampJitter(rig, noise.Normal());
     if (is_dropped) {
       ++num_dropped;
       continue;

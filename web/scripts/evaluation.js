@@ -6,6 +6,9 @@ const kEvaluationLines = {
   figure5: "How the error of the extrinsics is distributed over rigs.",
   figure7: "What the estimator says of one recording of each motion.",
   pareto: "What a method makes of a smaller budget: of path, of time, of frames.",
+  ablation: "Learners that differ in one thing, from as many episodes each.",
+  planners: "Planners under equal budgets of expected information.",
+  rows: "Open loop, robust, closed loop, and what an oracle would have done.",
   rivals: "Estimators and motions, each with each, on the same recordings.",
 };
 

@@ -230,6 +230,7 @@ function learnSection(result) {
       .map((motion) => ({policy: "learned", ...motion}));
   if (motions.length > 0) {
     made.append(wide(motionCard(motions, motions[0].board_outline_b, "The learned motion")));
+    made.append(...playerCards(motions, motions[0].board_outline_b, "The learned motion, played"));
   }
   return [made];
 }

@@ -7,6 +7,7 @@ const kKinds = {
   },
   "check": {title: "Check of a recording", summary: checkSummary, section: checkSection},
   "diff": {title: "Two calibrations compared", summary: diffSummary, section: diffSection},
+  "merge": {title: "Calibrations merged", summary: mergeSummary, section: mergeSection},
   "noise": {title: "Noise of an IMU", summary: noiseSummary, section: noiseSection},
   "learn": {title: "Learning", summary: learnSummary, section: learnSection},
   "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
@@ -24,6 +25,13 @@ const kKinds = {
   "pareto": {
     title: "Error against budget", summary: evaluationSummary, section: evaluationSection,
   },
+  "ablation": {
+    title: "What each difference costs", summary: evaluationSummary, section: evaluationSection,
+  },
+  "planners": {
+    title: "Planners compared", summary: evaluationSummary, section: evaluationSection,
+  },
+  "rows": {title: "Why learn at all", summary: evaluationSummary, section: evaluationSection},
   "rivals": {
     title: "Estimators compared", summary: evaluationSummary, section: evaluationSection,
   },

@@ -268,6 +268,10 @@ function table1Section(result) {
       ...cardsBySetting(list(plots.motions), (setting, motions) => {
         const title = setting === "" ? "The motions" : `The motions: ${setting}`;
         return wide(motionCard(motions, plots.board_outline_b, title));
-      }));
+      }),
+      ...cardsBySetting(list(plots.motions), (setting, motions) => {
+        const title = setting === "" ? "The motions, played" : `The motions, played: ${setting}`;
+        return playerCards(motions, plots.board_outline_b, title);
+      }).flat());
   return [made];
 }

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "calibrato/base/value.h"
+#include "calibrato/evaluation/contestant.h"
+#include "calibrato/sensors/rig.h"
+
+namespace calibrato {
+
+/// A motion as pages draw and play it (docs/formats.md section 4), all lengths in [m] in the base
+/// frame b:
+///
+///     path_length_m, motion_s
+///     loops       the camera's way, loop by loop: [x y z] each
+///     axis_b      where the camera looks now and then: a point and a direction, six numbers each
+///     played      {step_s; camera_b: [x y z qx qy qz qw] a step, of cam0;
+///                  arm_b: the points of the arm's links from foot to flange, a row [x y z x y z
+///                  ..] a step; empty without an arm}
+[[nodiscard]] Value MotionDrawing(const ExecutableMotion& motion, const Rig& rig);
+
+/// The corners of the board's outer points in the base frame b: four times [x y z] [m].
+[[nodiscard]] Value BoardOutline(const Rig& rig);
+
+}  // namespace calibrato

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calibrato/guide/gesture.h"
+#include "calibrato/guide/live_estimate.h"
+
+namespace calibrato {
+
+/// What a gesture would add to what is known, at these rates of frames and with the noise found so
+/// far. Frames count where the board is in the image; the way to the gesture does not.
+/// @return Information on what LayoutOf names.
+[[nodiscard]] Eigen::MatrixXd ExpectFromGesture(const GuideProblem& problem,
+                                                const LiveEstimate& estimate,
+                                                const Gesture& gesture, double camera_rate_hz);
+
+/// What to do next.
+struct GuidePlan {
+  /// The gestures to make, in their order, until all that is wanted is reached: each the one that
+  /// adds most a second to what is known with those before it. Empty where nothing is left to do.
+  std::vector<Gesture> gestures;
+  double time_left_s = 0.0;  ///< Of all of them, the ways between them included.
+  bool is_reached = false;   ///< All that is wanted.
+  /// False where half a minute of the best gestures would leave every sigma that is not reached
+  /// within 5 % of what it is: what is wanted is more than these gestures can give.
+  bool more_helps = true;
+};
+
+struct PlanningOptions {
+  double camera_rate_hz = 20.0;
+  double way_s = 1.5;     ///< From one gesture to the next, with reading what it is.
+  int max_gestures = 40;  ///< Where what is wanted is far away.
+};
+
+/// Ranks the gestures by expected information and goes on with the best, again and again.
+[[nodiscard]] GuidePlan PlanGestures(const GuideProblem& problem, const LiveEstimate& estimate,
+                                     const std::vector<Gesture>& gestures,
+                                     const PlanningOptions& options);
+
+}  // namespace calibrato

@@ -1,0 +1,149 @@
+#include "calibrato/guide/guide_page.h"
+
+#include <sys/random.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "calibrato/base/input_error.h"
+
+// The page, compiled in by assets.s.in.
+extern "C" {
+extern const char calibrato_guide_page[];
+extern const char calibrato_guide_page_end[];
+}
+
+namespace calibrato {
+namespace {
+
+constexpr const char* kCookie = "calibrato_guide";
+
+// From the system, not from an Rng: nobody may be able to guess it.
+std::string NewSecret() {
+  std::array<unsigned char, 16> bytes{};
+  if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size())) {
+    throw InputError({"no random numbers from the system", "", "", "serve the page on loopback"});
+  }
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string secret;
+  for (const unsigned char byte : bytes) {
+    secret += kDigits[byte >> 4];
+    secret += kDigits[byte & 15];
+  }
+  return secret;
+}
+
+// Takes as long for a good guess as for a bad one.
+bool IsSame(const std::string& one, const std::string& other) {
+  if (one.size() != other.size()) return false;
+  unsigned char difference = 0;
+  for (size_t k = 0; k < one.size(); ++k) {
+    difference = static_cast<unsigned char>(difference | (one[k] ^ other[k]));
+  }
+  return difference == 0;
+}
+
+HttpResponse Refusal(int status, const std::string& words) {
+  HttpResponse response;
+  response.status = status;
+  response.body = words + "\n";
+  return response;
+}
+
+bool NamesLoopback(const std::string& host_and_port) {
+  const std::string host = host_and_port.substr(0, host_and_port.find(':'));
+  return host == "127.0.0.1" || host == "localhost";
+}
+
+}  // namespace
+
+PageAccess::PageAccess(bool is_loopback, std::function<void(const std::string&)> on_new_token)
+    : is_loopback_(is_loopback), on_new_token_(std::move(on_new_token)) {
+  if (!is_loopback_) token_ = NewSecret();
+  on_new_token_(token_);
+}
+
+std::optional<HttpResponse> PageAccess::Check(const HttpRequest& request) {
+  if (is_loopback_) {
+    const auto host = request.headers.find("host");
+    if (host != request.headers.end() && NamesLoopback(host->second)) return std::nullopt;
+    return Refusal(403, "ask for this page as 127.0.0.1 or localhost");
+  }
+  std::string next_token;
+  HttpResponse welcome;
+  {
+    const std::lock_guard lock(mutex_);
+    const std::string cookie = request.Cookie(kCookie);
+    for (const std::string& session : sessions_) {
+      if (IsSame(session, cookie)) return std::nullopt;
+    }
+    const auto given = request.query.find("token");
+    if (given == request.query.end() || !IsSame(given->second, token_)) {
+      return Refusal(403, "the address has no token, or one that was used: the terminal shows one");
+    }
+    const std::string session = NewSecret();
+    sessions_.insert(session);
+    token_ = NewSecret();
+    next_token = token_;
+    welcome.status = 303;
+    welcome.headers["Location"] = "/";
+    welcome.headers["Set-Cookie"] =
+        std::string(kCookie) + "=" + session + "; HttpOnly; SameSite=Strict; Path=/";
+  }
+  on_new_token_(next_token);
+  return welcome;
+}
+
+GuidePage::GuidePage(const std::string& host, int port, Content content,
+                     const std::function<void(const std::string&)>& on_address)
+    : content_(std::move(content)),
+      access_(host == "127.0.0.1",
+              [this, host, on_address, is_first = true](const std::string& token) mutable {
+                // The server, which knows the port, comes after the first token.
+                if (std::exchange(is_first, false)) {
+                  first_token_ = token;
+                  return;
+                }
+                on_address(AddressFor(host, token));
+              }),
+      server_(host, port, [this](const HttpRequest& request) { return Answer(request); }) {
+  on_address(AddressFor(host, first_token_));
+}
+
+std::string GuidePage::AddressFor(const std::string& host, const std::string& token) const {
+  const std::string address = "http://" + host + ":" + std::to_string(server_.port()) + "/";
+  return token.empty() ? address : address + "?token=" + token;
+}
+
+HttpResponse GuidePage::Answer(const HttpRequest& request) {
+  if (const auto refusal = access_.Check(request)) return *refusal;
+  HttpResponse response;
+  if (request.path == "/end") {
+    // A link or an image on another page can't post with this header.
+    if (request.method != "POST" || request.headers.count("x-calibrato") == 0) {
+      return Refusal(405, "to be posted by the page's own button");
+    }
+    content_.end();
+    response.body = "ended\n";
+    return response;
+  }
+  if (request.method != "GET") return Refusal(405, "this page is only to be read");
+  if (request.path == "/") {
+    response.type = "text/html; charset=utf-8";
+    response.body.assign(calibrato_guide_page, calibrato_guide_page_end);
+  } else if (request.path == "/state") {
+    response.type = "application/json";
+    response.body = content_.state();
+  } else if (request.path == "/frame") {
+    response.type = "image/jpeg";
+    response.body = content_.frame();
+  } else if (request.path == "/report") {
+    response.type = "text/html; charset=utf-8";
+    response.body = content_.report();
+  }
+  if (response.body.empty()) return Refusal(404, "there are /, /state, /frame and /report");
+  return response;
+}
+
+}  // namespace calibrato

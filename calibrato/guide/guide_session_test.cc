@@ -1,0 +1,159 @@
+#include "calibrato/guide/guide_session.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <variant>
+
+#include "calibrato/base/input_error.h"
+#include "calibrato/base/value.h"
+#include "calibrato/calibration/planned_frame.h"
+#include "calibrato/calibration/synthetic_camera_imu_for_test.h"
+#include "calibrato/guide/capture.h"
+#include "calibrato/guide/guide_document.h"
+#include "calibrato/guide/imu_pipe.h"
+
+namespace calibrato {
+namespace {
+
+GuideProblem ProblemOf(const SyntheticCameraImu& truth) {
+  GuideProblem problem;
+  problem.points = PlannedView(truth.board);
+  problem.resolution = truth.resolution;
+  problem.known_camera = truth.model;
+  problem.imu = truth.imu_noise;
+  return problem;
+}
+
+Recording RecordingOf(const SyntheticCameraImu& truth) {
+  Rng rng(4);
+  const CameraImuProblem problem = truth.Problem(rng);
+  Recording recording;
+  recording.path = "synthetic";
+  recording.cameras.push_back({"cam0", problem.cameras[0].views, truth.resolution});
+  recording.imus.push_back({});
+  recording.imus.back().stream = problem.imus[0].stream;
+  return recording;
+}
+
+// Frames of a recording, until its plug is pulled.
+class Unplugged : public FrameSource {
+ public:
+  Unplugged(const SyntheticCameraImu& truth, int num_frames, bool throws)
+      : replay_(OpenReplaySource(RecordingOf(truth), 0.0, {})),
+        num_left_(num_frames),
+        throws_(throws) {}
+  std::optional<CapturedFrame> Next(const ImuSink& sink) override {
+    if (num_left_-- > 0) return replay_->Next(sink);
+    if (throws_) throw InputError({"cannot read frame", "device", "no such device", ""});
+    return std::nullopt;
+  }
+  Resolution resolution() const override { return replay_->resolution(); }
+  std::string end_words() const override { return "the camera is gone"; }
+
+ private:
+  std::unique_ptr<FrameSource> replay_;
+  int num_left_;
+  bool throws_;
+};
+
+TEST(GuideSession, AsksForGesturesAndEndsWhenAllIsReached) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 12.0;
+  GuideSession session(truth.board, ProblemOf(truth), {});
+  EXPECT_FALSE(session.Snapshot().is_measured);
+  const auto source = OpenReplaySource(RecordingOf(truth), 0.0, {});
+  const FrameSource::ImuSink sink{[&](const VectorSample& gyro, const VectorSample& accel) {
+                                    session.AddGyro(gyro);
+                                    session.AddAccel(accel);
+                                  },
+                                  {},
+                                  {}};
+  bool has_hint = false;
+  for (int k = 0; auto frame = source->Next(sink); ++k) {
+    session.AddView(frame->stamp, frame->view);
+    if (k % 40 == 0) session.WaitForSolve();
+    const GuideSnapshot snapshot = session.Snapshot();
+    if (!snapshot.gesture) continue;
+    has_hint = true;
+    EXPECT_FALSE(snapshot.gesture->words.empty());
+    EXPECT_EQ(snapshot.ghost.size(), 4U);
+    EXPECT_GE(snapshot.gesture_left_s, 0.0);
+    const Value document = GuideDocument(snapshot, {}, truth.resolution);
+    EXPECT_EQ(ParseJson(ToJson(document), "state").At("hint").At("words").AsString(),
+              snapshot.gesture->words);
+  }
+  EXPECT_TRUE(has_hint);
+  const GuideSnapshot last = session.Snapshot();
+  EXPECT_TRUE(last.is_measured);
+  ASSERT_TRUE(last.ended);
+  EXPECT_EQ(*last.ended, "all that is wanted is reached");
+  EXPECT_LT(last.elapsed_s, 11.9);
+}
+
+TEST(GuideSession, WarnsOfStampsSilenceAndALostBoard) {
+  const SyntheticCameraImu truth;
+  GuideSession session(truth.board, ProblemOf(truth), {});
+  Rng rng(4);
+  const BoardView view = truth.Problem(rng).cameras[0].views[0];
+  const auto at = [](double t_s) { return Time::FromNanoseconds(1) + Duration::FromSeconds(t_s); };
+  EXPECT_TRUE(session.AddView(at(0.1), view));
+  EXPECT_FALSE(session.AddView(at(0.1), view));
+  EXPECT_EQ(session.Snapshot().warnings.at(0), "a frame's stamp did not ascend: it was left out");
+  for (double t = 0.2; t < 1.4; t += 0.1) session.AddView(at(t), std::nullopt);
+  const auto warnings = session.Snapshot().warnings;
+  EXPECT_NE(std::find(warnings.begin(), warnings.end(), "the board is not seen"), warnings.end());
+  EXPECT_NE(std::find(warnings.begin(), warnings.end(), "the IMU is silent"), warnings.end());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  session.AddGyro({at(1.0), {0.0, nan, 0.0}});
+  EXPECT_EQ(session.Snapshot().warnings.back(), "the gyroscope gave a sample that is no number");
+  EXPECT_EQ(session.Snapshot().num_imu_samples, 0);
+  // Warnings pass.
+  for (double t = 1.5; t < 6.0; t += 0.1) session.AddView(at(t), view);
+  const auto later = session.Snapshot().warnings;
+  EXPECT_EQ(std::find(later.begin(), later.end(), "the board is not seen"), later.end());
+}
+
+TEST(Capture, KeepsWhatWasRecordedWhenTheCameraGoes) {
+  const SyntheticCameraImu truth;
+  for (const bool throws : {false, true}) {
+    const std::string path =
+        std::filesystem::temp_directory_path() / ("calibrato_capture_" + std::to_string(getpid()));
+    std::filesystem::remove_all(path);
+    GuideSession session(truth.board, ProblemOf(truth), {});
+    Unplugged source(truth, 30, throws);
+    LatestFrame latest;
+    {
+      GrowingRecording recording(path, truth.resolution, 1);
+      Capture(source, &session, &recording, &latest, [] { return false; });
+    }
+    ASSERT_TRUE(session.Snapshot().ended);
+    EXPECT_NE(session.Snapshot().ended->find(throws ? "no such device" : "the camera is gone"),
+              std::string::npos);
+    const Recording read = OpenRecording(path, {});
+    EXPECT_EQ(std::get<std::vector<BoardView>>(read.cameras[0].data).size(), 30U);
+    EXPECT_GT(read.imus[0].stream.gyro.size(), 200U);
+    std::filesystem::remove_all(path);
+  }
+}
+
+TEST(ParseImuLine, TakesLinesOfListsAndNothingElse) {
+  const auto sample = ParseImuLine("1700000000000000001,0.1,-0.2,3e-1,0,9.8,-1.5\r");
+  ASSERT_TRUE(sample);
+  EXPECT_EQ(sample->gyro.stamp.nanoseconds(), 1700000000000000001);
+  EXPECT_EQ(sample->gyro.value, Eigen::Vector3d(0.1, -0.2, 0.3));
+  EXPECT_EQ(sample->accel.value, Eigen::Vector3d(0.0, 9.8, -1.5));
+  for (const char* line : {"", "1", "1,2,3,4,5,6", "1,2,3,4,5,6,7,8", "x,1,2,3,4,5,6",
+                           "-1,1,2,3,4,5,6", "1.5,1,2,3,4,5,6", "1,1,2,3,4,5,six"}) {
+    EXPECT_FALSE(ParseImuLine(line)) << line;
+  }
+}
+
+}  // namespace
+}  // namespace calibrato

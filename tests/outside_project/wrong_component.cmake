@@ -1,0 +1,1 @@
+find_package(calibrato REQUIRED COMPONENTS kitchen)
