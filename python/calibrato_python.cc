@@ -46,6 +46,10 @@ BoardView MakeView(const Rows2& pixels, const Rows3& points, std::optional<std::
          std::to_string(pixels.rows()) + " pixels and " + std::to_string(points.rows()) + " points",
          "give one row a corner in each"});
   }
+  if (!pixels.allFinite() || !points.allFinite()) {
+    throw InputError({"a view has corners that are not finite", "",
+                      "a pixel or a point is NaN or infinite", "leave these corners out"});
+  }
   BoardView view;
   view.stamp = Time::FromNanoseconds(stamp_ns);
   view.name = std::to_string(stamp_ns);
@@ -71,7 +75,8 @@ std::vector<int64_t> StampsOf(const std::vector<VectorSample>& samples) {
   return stamps;
 }
 
-std::vector<VectorSample> SamplesOf(const std::vector<int64_t>& stamps_ns, const Rows3& values) {
+std::vector<VectorSample> SamplesOf(const std::string& sensor,
+                                    const std::vector<int64_t>& stamps_ns, const Rows3& values) {
   if (stamps_ns.size() != static_cast<size_t>(values.rows())) {
     throw InputError({"stamps and samples are not of one length", "",
                       std::to_string(stamps_ns.size()) + " and " + std::to_string(values.rows()),
@@ -79,6 +84,17 @@ std::vector<VectorSample> SamplesOf(const std::vector<int64_t>& stamps_ns, const
   }
   std::vector<VectorSample> samples;
   for (size_t k = 0; k < stamps_ns.size(); ++k) {
+    const std::string where = sensor + " row " + std::to_string(k);
+    if (!values.row(static_cast<Eigen::Index>(k)).allFinite()) {
+      throw InputError({"a sample is not finite", where, "it has a NaN or an infinity",
+                        "leave this sample out"});
+    }
+    if (k > 0 && stamps_ns[k] <= stamps_ns[k - 1]) {
+      throw InputError({"the stamps do not ascend", where,
+                        std::to_string(stamps_ns[k]) + " ns stands after " +
+                            std::to_string(stamps_ns[k - 1]) + " ns",
+                        "sort the samples by time, and give each stamp once"});
+    }
     samples.push_back({Time::FromNanoseconds(stamps_ns[k]),
                        values.row(static_cast<Eigen::Index>(k)).transpose()});
   }
@@ -153,14 +169,19 @@ py::dict CalibrateCameraFrom(const std::vector<BoardView>& views, std::pair<int,
 }
 
 py::dict CalibrateCameraImuFrom(const std::vector<BoardView>& views, const std::string& model,
-                                const Eigen::VectorXd& parameters,
+                                const std::optional<Eigen::VectorXd>& parameters,
                                 const std::vector<int64_t>& stamps_ns, const Rows3& gyro,
                                 const Rows3& accel, const std::string& imu_json) {
+  if (!parameters) {
+    throw InputError({"the camera has no parameters", "", "its calibration found no start",
+                      "calibrate it again, from more views"});
+  }
   CameraImuProblem problem;
-  problem.cameras.push_back({CameraModel(model, parameters), views, {}, {}});
-  problem.imus.push_back({{SamplesOf(stamps_ns, gyro), SamplesOf(stamps_ns, accel)},
-                          ImuNoiseFromValue(ParseJson(imu_json, "imu")),
-                          ImuModelKind::kCalibrated});
+  problem.cameras.push_back({CameraModel(model, *parameters), views, {}, {}});
+  problem.imus.push_back(
+      {{SamplesOf("gyro", stamps_ns, gyro), SamplesOf("accel", stamps_ns, accel)},
+       ImuNoiseFromValue(ParseJson(imu_json, "imu")),
+       ImuModelKind::kCalibrated});
   CameraImuCalibration found;
   {
     const py::gil_scoped_release release;

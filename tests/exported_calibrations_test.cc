@@ -230,6 +230,12 @@ TEST(ExportedCalibration, IsReadByOpenVins) {
     EXPECT_TRUE(std::filesystem::exists(out + std::string(estimator[key]))) << key;
   }
   EXPECT_EQ(static_cast<int>(estimator["max_clones"]), 11);
+  // It ends where one of its keys is missing; one of each of its parts.
+  for (const char* key : {"use_fej", "integration", "calib_imu_intrinsics", "init_dyn_min_deg",
+                          "num_opencv_threads", "track_frequency"}) {
+    EXPECT_FALSE(estimator[key].empty()) << key;
+  }
+  EXPECT_EQ(std::string(estimator["integration"]), "rk4");
 }
 
 // w_m = Tw R_IMUtoGYRO w + Tg f + b and a_m = Ta R_IMUtoACC f + b give what our IMU reads.
@@ -272,9 +278,14 @@ TEST(ExportedCalibration, IsReadByVinsFusion) {
     EXPECT_EQ(static_cast<int>(rig["num_of_cam"]), 2);
     EXPECT_EQ(static_cast<double>(rig["td"]), kTimeOffset);
     EXPECT_NEAR(static_cast<double>(rig["g_norm"]), kGravity, 1e-12);
-    // Of one sample at 200 Hz: Kalibr's density times the root of the rate.
-    EXPECT_NEAR(static_cast<double>(rig["acc_n"]), 2.1e-3 * std::sqrt(200.0), 1e-15);
-    EXPECT_NEAR(static_cast<double>(rig["gyr_n"]), 1.7e-4 * std::sqrt(200.0), 1e-15);
+    // A step of 1/200 s weighs two samples by half of it each, their noise independent: over a
+    // second the variances add up to the squared density.
+    const double half_step = 0.5 / 200.0;
+    const auto gained_in_a_second = [&](const char* key) {
+      return 200.0 * 2.0 * std::pow(half_step * static_cast<double>(rig[key]), 2);
+    };
+    EXPECT_NEAR(std::sqrt(gained_in_a_second("acc_n")), 2.1e-3, 1e-15);
+    EXPECT_NEAR(std::sqrt(gained_in_a_second("gyr_n")), 1.7e-4, 1e-15);
     // A bias that steps by acc_w * dt spreads like one with random walk acc_w / sqrt(200 Hz).
     EXPECT_NEAR(static_cast<double>(rig["acc_w"]) / 200.0 * std::sqrt(200.0), 3.2e-4, 1e-15);
     EXPECT_NEAR(static_cast<double>(rig["gyr_w"]) / 200.0 * std::sqrt(200.0), 2e-5, 1e-15);
@@ -424,7 +435,21 @@ TEST(ExportedCalibration, ForOrbSlam3SaysHowToShiftTheStampsAndAsksForTheRate) {
   with_rate.insert(with_rate.end(), {"--camera-rate", "20"});
   const Ended ended = RunProgram(with_rate);
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
-  EXPECT_THAT(ended.err, HasSubstr("add 0.0073 s"));
+  EXPECT_THAT(ended.err, HasSubstr("add 0.0073 s to the stamps of cam0"));
+}
+
+TEST(ExportedCalibration, ForOrbSlam3ShiftsEachCamerasStampsByItsOwnOffset) {
+  const ScratchFolder scratch;
+  const std::string folder = WriteResult(scratch, {kRadtan, kOtherRadtan}, PlainImu());
+  Value chain = ReadYaml(folder + "/camchain-imucam.yaml");
+  Value camera = chain.At("cam1");
+  camera.Set("timeshift_cam_imu", -0.002);
+  chain.Set("cam1", camera);
+  (void)scratch.Write("result/camchain-imucam.yaml", ToYaml(chain));
+  const std::vector<std::string> warnings = FilesOf(folder, "orb-slam3").warnings;
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_THAT(warnings[0], HasSubstr("add 0.0073 s to the stamps of cam0"));
+  EXPECT_THAT(warnings[1], HasSubstr("add -0.002 s to the stamps of cam1"));
 }
 
 // ROS -------------------------------------------------------------------------------------------

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,7 @@ bool SufficesAt(const GuideProblem& problem, const SimulatedHand& hand, double t
   return EstimateSoFar(problem, hand.RecordedUntil(t_s)).is_reached();
 }
 
+// Infinite where the goal is not reached.
 double GuidedTime(const Rig& rig, const GuideProblem& problem, const Rng& rng, bool talk) {
   SimulatedHand hand(rig, {}, rng);
   LiveEstimate estimate = GuessBefore(problem);
@@ -78,10 +81,11 @@ double GuidedTime(const Rig& rig, const GuideProblem& problem, const Rng& rng, b
                        [&](double t_s) { return SufficesAt(problem, hand, t_s); });
     }
   }
-  return hand.now_s();
+  return std::numeric_limits<double>::infinity();
 }
 
-// Three sweeps along and about each axis, and a figure eight; then from the beginning.
+// Three sweeps along and about each axis, and a figure eight; then from the beginning. Where the
+// goal is not reached, when the expert gives up: less than it would take, in the expert's favour.
 double ExpertTime(const Rig& rig, const GuideProblem& problem, const Rng& rng, bool talk) {
   SimulatedHand hand(rig, {}, rng);
   const CameraModel& lens = rig.cameras.front().model;
@@ -105,11 +109,9 @@ double ExpertTime(const Rig& rig, const GuideProblem& problem, const Rng& rng, b
   eight.period_s = 1.8;
   eight.duration_s = 2.0 * eight.period_s;
   routine.push_back(eight);
-  double once_s = 0.0;
   while (hand.now_s() < kGivesUp) {
     const double before_s = hand.now_s();
     for (const Gesture& gesture : routine) hand.Make(gesture);
-    if (once_s == 0.0) once_s = hand.now_s();
     const LiveEstimate estimate = EstimateSoFar(problem, hand.RecordedUntil(hand.now_s()));
     if (talk) {
       std::printf("  %5.1f s  expert's routine        ", hand.now_s());

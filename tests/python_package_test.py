@@ -1,6 +1,7 @@
 """What the package promises, from outside."""
 
 import ast
+import dataclasses
 import inspect
 import pathlib
 import unittest
@@ -52,6 +53,40 @@ class Package(unittest.TestCase):
         del rig["imu"]
         with self.assertRaisesRegex(calibrato.InputError, "imu"):
             calibrato.information(rig, {}, "intrinsic")
+
+    def test_refuses_corners_that_are_not_finite(self):
+        for bad in (np.nan, np.inf):
+            pixels, points = np.zeros((42, 2)), grid()
+            pixels[3, 1] = bad
+            with self.assertRaisesRegex(calibrato.InputError, "not finite"):
+                calibrato.View(pixels, grid())
+            points[3, 1] = bad
+            with self.assertRaisesRegex(calibrato.InputError, "not finite"):
+                calibrato.View(np.zeros((42, 2)), points)
+
+    def test_refuses_samples_that_are_not_finite_and_stamps_that_do_not_ascend(self):
+        camera = calibrato.calibrate_camera(views_through(500.0), (640, 480), model="pinhole-none")
+        imu = calibrato.paper_rig()["imu"]
+        stamps = np.arange(5) * 5_000_000
+        good = calibrato.Recording([], 0, stamps, np.zeros((5, 3)), np.zeros((5, 3)))
+        bad = np.zeros((5, 3))
+        bad[2, 1] = np.nan
+        for sensor in ("gyro", "accel"):
+            recording = dataclasses.replace(good, **{sensor: bad})
+            with self.assertRaisesRegex(calibrato.InputError, f"not finite, {sensor} row 2"):
+                calibrato.calibrate_camera_imu(recording, camera, imu)
+        for wrong in (stamps[[0, 1, 1, 3, 4]], stamps[[0, 3, 1, 2, 4]]):
+            recording = dataclasses.replace(good, imu_stamps_ns=wrong)
+            with self.assertRaisesRegex(calibrato.InputError, "do not ascend, gyro row 2"):
+                calibrato.calibrate_camera_imu(recording, camera, imu)
+
+    def test_refuses_a_camera_without_parameters(self):
+        camera = calibrato.CameraResult("failed", "pinhole-none", ["fu", "fv", "pu", "pv"], None,
+                                        None, float("nan"), float("nan"), 0)
+        stamps = np.arange(5) * 5_000_000
+        recording = calibrato.Recording([], 0, stamps, np.zeros((5, 3)), np.zeros((5, 3)))
+        with self.assertRaisesRegex(calibrato.InputError, "no parameters"):
+            calibrato.calibrate_camera_imu(recording, camera, calibrato.paper_rig()["imu"])
 
     def test_the_same_seed_gives_the_same_recording(self):
         rig = calibrato.paper_rig()

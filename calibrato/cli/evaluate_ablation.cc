@@ -20,6 +20,7 @@
 #include "calibrato/evaluation/ablation.h"
 #include "calibrato/learning/agent.h"
 #include "calibrato/learning/trainer.h"
+#include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
 namespace {
@@ -164,6 +165,7 @@ std::optional<AblationVariant> Learned(const Variant& variant, const std::string
   const LearnEnvironment made = MakeEnvironment(variant.setting);
   LearnOptions learn = variant.learn;
   learn.environment = made.name;
+  learn.base_pose = BasePoseBeforeBoard(made.scene);
   learn.resume = std::filesystem::exists(folder + "/checkpoint.bin");
   const LearnResult learned = Learn(learn, *made.environment, folder, &InterruptRequested());
   if (learned.termination == LearnTermination::kInterrupted) return std::nullopt;
@@ -183,15 +185,17 @@ ExitCode RunAblation(const Options& options, const GlobalOptions& global) {
   Stopwatch stopwatch;
   OutputFolder out(options.evaluate.out);
   NoteInterruptions();
-  // Many learn side by side: one bar for all.
-  std::vector<Ablation> tasks;
+  std::vector<std::vector<Variant>> of_tasks;
   for (const Task task : TasksOf(options.evaluate)) {
-    const std::vector<Variant> variants =
-        Chosen(VariantsOf(task, options, global.seed), options.variants);
-    for (const Variant& variant : variants) {
+    of_tasks.push_back(Chosen(VariantsOf(task, options, global.seed), options.variants));
+    for (const Variant& variant : of_tasks.back()) {
       CheckOptions(variant.learn);
       (void)MakeEnvironment(variant.setting);
     }
+  }
+  std::vector<Ablation> tasks;
+  for (const std::vector<Variant>& variants : of_tasks) {
+    const Task task = variants.front().learn.task;
     stopwatch.Start(TaskName(task) + "_training_s");
     const auto learned = ParallelMap<std::optional<AblationVariant>>(
         variants.size(), [&](size_t k) -> std::optional<AblationVariant> {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
@@ -30,6 +31,13 @@ std::optional<Task> TaskIn(const Value* value) {
   return TaskFromName(task->AsString());
 }
 
+// Rows that one table or another has by itself.
+bool IsBuiltIn(const std::string& name) {
+  static const std::set<std::string> kNames = {"random", "handcrafted", "expert",     "nominal",
+                                               "robust", "oracle",      "closed loop"};
+  return kNames.contains(name);
+}
+
 MotionUnderTrial ReadPolicyMotion(const std::string& words) {
   std::string name = "learned";
   std::string folder = words;
@@ -37,6 +45,10 @@ MotionUnderTrial ReadPolicyMotion(const std::string& words) {
   if (equals != std::string::npos && !fs::exists(words)) {
     name = words.substr(0, equals);
     folder = words.substr(equals + 1);
+  }
+  if (IsBuiltIn(name)) {
+    throw InputError({"bad --policy '" + words + "'", "", "a row of that name is there already",
+                      "give it another name"});
   }
   if (name.empty()) {
     throw InputError({"bad --policy '" + words + "'", "", "the name before = is empty",
@@ -58,10 +70,9 @@ std::string NameOf(const std::string& path) { return fs::path(path).stem().strin
 // A file's row: only policies share a name, where they are what different training seeds gave.
 std::string NewName(const std::string& path, const std::vector<MotionUnderTrial>& motions) {
   const std::string name = NameOf(path);
-  const bool is_built_in = name == "random" || name == "handcrafted" || name == "expert";
   const bool is_taken = std::any_of(motions.begin(), motions.end(),
                                     [&](const auto& other) { return other.policy == name; });
-  if (!is_built_in && !is_taken) return name;
+  if (!IsBuiltIn(name) && !is_taken) return name;
   throw InputError({"two motions named '" + name + "'", path, "a row is called after its file",
                     "give a copy of it another name"});
 }

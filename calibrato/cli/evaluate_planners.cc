@@ -95,8 +95,13 @@ ExitCode RunComparison(const Options& options, const GlobalOptions& global) {
   stopwatch.Start("evaluation_s");
   std::vector<PlannerComparison> tasks;
   std::map<std::string, double> seconds;
+  if (!evaluate.rig_file.empty() && options.design.num_believed > 0) {
+    throw InputError({"--believed has no use here", "", "--rig-file names one rig",
+                      "leave it out, or use --rigs"});
+  }
   for (const Task task : TasksOf(evaluate)) {
     const ContestSetting setting = SettingOf(evaluate, global, task, {200, 50, 20});
+    CheckFidelity(setting);
     const Rng rng = Rng(global.seed).Stream("planners");
     const MotionDesignProblem problem = MakeDesignProblem(
         task, setting.carrier,

@@ -99,6 +99,11 @@ void CheckOptions(const Options& options) {
   if (options.no_imu && !(options.imu.empty() && options.imu_pipe.empty())) {
     throw InputError({"--no-imu does not go with --imu or --imu-pipe", "", "", "leave one out"});
   }
+  if (!options.cameras.empty() && options.imu.empty()) {
+    throw InputError({"nothing is left to calibrate", "--cameras",
+                      "the camera is known, and there is no --imu",
+                      "leave out --cameras, or give --imu"});
+  }
   if (!options.imu_pipe.empty() && options.camera.empty()) {
     throw InputError({"--imu-pipe does not go with --replay", "",
                       "a recording has its own IMU samples", "leave it out"});
@@ -151,11 +156,20 @@ ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
   std::optional<Resolution> known_resolution;
   if (!options.cameras.empty()) {
     const std::vector<Camera> chain = CameraChainFromValue(ReadYaml(options.cameras), &warnings);
+    if (chain.size() > 1) {
+      throw InputError({"several cameras", options.cameras, "one camera is guided at a time",
+                        "give a camera chain with its cam0 alone"});
+    }
     problem.known_camera = chain.front().model;
     known_resolution = chain.front().resolution;
   }
   if (!options.imu.empty()) {
-    problem.imu = ImusFromValue(ReadYaml(options.imu), &warnings).front().noise;
+    const std::vector<Imu> imus = ImusFromValue(ReadYaml(options.imu), &warnings);
+    if (imus.size() > 1) {
+      throw InputError({"several IMUs", options.imu, "one IMU is guided at a time",
+                        "give an imu.yaml with its imu0 alone"});
+    }
+    problem.imu = imus.front().noise;
   }
 
   std::unique_ptr<FrameSource> source;
@@ -196,34 +210,42 @@ ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
     return GuideDocument(session.Snapshot(), phase.Now(latest.MedianLatencyMs()),
                          problem.resolution);
   };
-  GuidePage page(
-      options.host, options.port,
-      {[&] {
-         phase.NoteAsked();
-         return ToJsonLine(document());
-       },
-       [&] { return latest.Jpeg(); }, [&] { return phase.report(); },
-       [&] { session.End("ended on the page"); }},
-      [&](const std::string& address) { std::fprintf(stderr, "open %s\n", address.c_str()); });
+  GuidePage page(options.host, options.port,
+                 {[&] {
+                    phase.NoteAsked();
+                    return ToJsonLine(document());
+                  },
+                  [&] { return latest.Jpeg(); }, [&] { return phase.report(); },
+                  [&] { session.End("ended on the page"); }},
+                 [&](const std::string& address) {
+                   std::fprintf(stderr, "open %s%s\n", address.c_str(),
+                                options.host == "0.0.0.0"
+                                    ? " with this machine's own address in place of 0.0.0.0"
+                                    : "");
+                 });
   GrowingRecording recording(options.out, problem.resolution, PointsPerTag(board));
   NoteInterruptions();
   {
-    std::unique_ptr<ImuPipe> imu;
     std::atomic<bool> imu_is_kept = true;
+    std::unique_ptr<ImuPipe> imu;  // Last: its thread uses all the others.
     if (!options.imu_pipe.empty()) {
       imu = std::make_unique<ImuPipe>(
           options.imu_pipe,
           [&](const ImuSample& sample) {
+            const bool has_gyro = session.AddGyro(sample.gyro);
+            const bool has_accel = session.AddAccel(sample.accel);
+            if (!has_gyro || !has_accel || !imu_is_kept) return;
             try {
-              if (imu_is_kept) recording.AddImu(sample.gyro, sample.accel);
+              recording.AddImu(sample.gyro, sample.accel);
             } catch (const InputError& error) {
               imu_is_kept = false;
               session.End(error.what());
             }
-            session.AddGyro(sample.gyro);
-            session.AddAccel(sample.accel);
           },
-          [] {});
+          [&] {
+            session.AddWarning(
+                "a line of the IMU's pipe is no sample: a stamp and six numbers are");
+          });
     }
     Capture(*source, &session, &recording, &latest, [] { return InterruptRequested().load(); });
   }
@@ -267,7 +289,8 @@ Action SetUpGuide(CLI::App& app, const GlobalOptions& global) {
                  "A recording instead, played again: folder, bag, MCAP file or video");
   app.add_option("--target", options->target, "The board: Kalibr's target YAML")->required();
   app.add_option("--cameras", options->cameras,
-                 "Kalibr's camchain.yaml, where the camera is known; else it is calibrated too");
+                 "Kalibr's camchain.yaml, where the camera is known and --imu is given; else it is "
+                 "calibrated too");
   app.add_option("--model", options->model, "Camera model, where it is not known")
       ->capture_default_str();
   app.add_option("--imu", options->imu, "Noise of the IMU: Kalibr's imu.yaml");
@@ -282,7 +305,7 @@ Action SetUpGuide(CLI::App& app, const GlobalOptions& global) {
       ->check(NumberBetween(0.05, 2.0))
       ->capture_default_str();
   app.add_option("--speed", options->speed, "Of a replay; 0 for as fast as it can")
-      ->check(NumberBetween(0.0, 1000.0))
+      ->check(NumberBetween(0.0, 0.0) | NumberBetween(0.01, 1000.0))
       ->capture_default_str();
   app.add_option("--max-duration", options->max_duration_s, "End after so long at the latest [s]")
       ->check(NumberBetween(1.0, 86400.0))

@@ -9,7 +9,9 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -27,18 +29,17 @@ using testing::AllOf;
 using testing::AnyOf;
 using testing::HasSubstr;
 
-// A port that was free a moment ago.
-int FreePort() {
-  const int probe = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const generic = reinterpret_cast<sockaddr*>(&address);
-  bind(probe, generic, size);
-  getsockname(probe, generic, &size);
-  close(probe);
-  return ntohs(address.sin_port);
+// Starts a command with its stderr in a file that can be read while it runs.
+Arguments WithStderrIn(const std::string& path) {
+  return {"sh", "-c", "exec \"$0\" \"$@\" 2> '" + path + "'"};
+}
+
+// Of the address that the command says to open; 0 before it does.
+int PortIn(const std::string& stderr_text) {
+  const std::string before = "open http://127.0.0.1:";
+  const size_t at = stderr_text.find(before);
+  if (at == std::string::npos || stderr_text.find('\n', at) == std::string::npos) return 0;
+  return std::atoi(stderr_text.c_str() + at + before.size());
 }
 
 std::string Ask(int port, const std::string& target) {
@@ -127,12 +128,15 @@ TEST_F(GuideCommand, KeepsARecordingAndCalibratesIt) {
 }
 
 TEST_F(GuideCommand, ShowsItsStateWhileItRuns) {
-  const int port = FreePort();
-  RunningProgram program(Guide({"--port", std::to_string(port)}));
+  const std::string err = scratch_.Path("stderr");
+  RunningProgram program(Guide({"--port", "0", "--speed", "0.1", "--want", "time-ms=1e-6"}),
+                         std::nullopt, WithStderrIn(err));
+  int port = 0;
   std::string state;
-  for (int k = 0; k < 200 && state.find("\"hint\"") == std::string::npos; ++k) {
+  for (int k = 0; k < 600 && state.find("\"hint\"") == std::string::npos; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    state = Ask(port, "/state");
+    if (port == 0) port = PortIn(ContentOf(err));
+    if (port != 0) state = Ask(port, "/state");
   }
   EXPECT_THAT(state, AllOf(HasSubstr("\"phase\": \"capturing\""), HasSubstr("\"words\": "),
                            HasSubstr("\"ghost\": [["), HasSubstr("\"rot_x\"")));
@@ -145,8 +149,8 @@ TEST_F(GuideCommand, ShowsItsStateWhileItRuns) {
 }
 
 TEST_F(GuideCommand, KilledInTheMiddleKeepsWhatWasThere) {
-  RunningProgram program(Guide({}));
-  for (int k = 0; k < 200 && ContentOf(out_ + "/cam0_corners.csv").size() < 30'000; ++k) {
+  RunningProgram program(Guide({"--speed", "0.3", "--want", "time-ms=1e-6"}));
+  for (int k = 0; k < 600 && ContentOf(out_ + "/cam0_corners.csv").size() < 30'000; ++k) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   program.Signal(SIGKILL);
@@ -173,14 +177,37 @@ TEST_F(GuideCommand, RefusesWhatDoesNotGoTogether) {
         Arguments{"guide", "--target", target, "--out", out_, "--camera", "0", "--replay",
                   recorded_},
         Arguments{"guide", "--target", target, "--out", out_, "--camera", "/nowhere/video9"},
+        Arguments{"guide", "--target", target, "--out", out_, "--replay", recorded_, "--cameras",
+                  scratch_.Path("camchain.yaml")},
         Guide({"--no-imu"}), Guide({"--want", "time-ms=nan"}), Guide({"--speed", "nan"}),
-        Guide({"--model", "pinhole-radtam"}), Guide({"--host", "192.0.2.1"}),
-        Guide({"--imu-pipe", "/dev/null"})}) {
+        Guide({"--speed", "0.001"}), Guide({"--model", "pinhole-radtam"}),
+        Guide({"--host", "192.0.2.1"}), Guide({"--imu-pipe", "/dev/null"})}) {
     const Ended ended = RunProgram(arguments);
     EXPECT_EQ(ended.exit_code, 2) << ended.err;
     EXPECT_THAT(ended.err, HasSubstr("error: "));
     EXPECT_FALSE(fs::exists(out_)) << ended.err;
   }
+}
+
+TEST_F(GuideCommand, RefusesSeveralCamerasOrIMUsBeforeItRecords) {
+  Value chain = ReadYaml(scratch_.Path("camchain.yaml"));
+  chain.Set("cam1", ReadYaml(scratch_.Path("camchain.yaml")).At("cam0"));
+  Value imus = Value::Object();
+  for (const char* name : {"imu0", "imu1"}) {
+    imus.Set(name, ReadYaml(scratch_.Path("rig.yaml")).At("imu"));
+  }
+  const auto refusal = [&](const std::string& cameras, const std::string& imu) {
+    const Ended ended =
+        RunProgram({"guide", "--replay", recorded_, "--target", recorded_ + "/target.yaml",
+                    "--cameras", cameras, "--imu", imu, "--out", out_});
+    EXPECT_EQ(ended.exit_code, 2) << ended.err;
+    EXPECT_FALSE(fs::exists(out_)) << ended.err;
+    return ended.err;
+  };
+  EXPECT_THAT(refusal(scratch_.Write("two.yaml", ToYaml(chain)), recorded_ + "/imu.yaml"),
+              HasSubstr("several cameras"));
+  EXPECT_THAT(refusal(scratch_.Path("camchain.yaml"), scratch_.Write("imus.yaml", ToYaml(imus))),
+              HasSubstr("several IMUs"));
 }
 
 }  // namespace

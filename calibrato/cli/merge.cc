@@ -1,9 +1,13 @@
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <set>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "calibrato/base/files.h"
+#include "calibrato/base/input_error.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/output.h"
 #include "calibrato/cli/result_folder.h"
@@ -18,9 +22,31 @@ struct Options {
   std::string out;
 };
 
+// One spelling a folder, however it was given: relative, by a link, with a slash at its end.
+std::filesystem::path OneSpelling(const std::string& folder) {
+  const std::filesystem::path absolute =
+      std::filesystem::absolute(std::filesystem::path(".") / folder);
+  std::error_code error;
+  std::filesystem::path path = std::filesystem::weakly_canonical(absolute, error);
+  if (error) path = absolute.lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
+// @throws InputError where a folder was given twice, or is the one to write to.
+void CheckFolders(const Options& options) {
+  std::set<std::filesystem::path> taken = {OneSpelling(options.out)};
+  for (const std::string& folder : options.folders) {
+    if (taken.insert(OneSpelling(folder)).second) continue;
+    throw InputError({"a result would count twice", folder,
+                      "it was given before, or is the folder of --out",
+                      "give each recording once, and another --out"});
+  }
+}
+
 ExitCode RunMerge(const Options& options, const GlobalOptions& global) {
   Stopwatch stopwatch;
   OutputFolder out(options.out);
+  CheckFolders(options);
   std::vector<ResultFolder> folders;
   for (const std::string& folder : options.folders) folders.push_back(ReadResultFolder(folder));
   const MergedDocuments merged = MergeResults(folders);

@@ -93,6 +93,28 @@ TEST(MergeCommand, WritesNothingOfOneResultAlone) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(MergeCommand, CountsNoFolderTwice) {
+  const ScratchFolder scratch;
+  const std::string a = WriteResult(scratch, "a", 600.0);
+  const std::string b = WriteResult(scratch, "b", 602.0);
+  const std::string out = scratch.Path("merged");
+  std::filesystem::create_directory_symlink(a, scratch.Path("link"));
+  const std::vector<std::vector<std::string>> commands = {
+      {"merge", a, a, "--out", out},
+      {"merge", a, b, a + "/", "--out", out},
+      {"merge", a, scratch.Path("b/../a"), "--out", out},
+      {"merge", a, scratch.Path("link"), "--out", out},
+      {"merge", a, b, "--out", b + "/"}};
+  for (const std::vector<std::string>& command : commands) {
+    const Ended ended = RunProgram(command);
+    EXPECT_EQ(ended.exit_code, 2);
+    EXPECT_NE(ended.err.find("a result would count twice"), std::string::npos) << ended.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  // What stood in the folder that was to be written to still stands there.
+  EXPECT_EQ(ReadJson(b + "/result.json").At("kind").AsString(), "camera");
+}
+
 TEST(DiffCommand, FindsSmallerChangesAtAHigherLevel) {
   const ScratchFolder scratch;
   const std::string a = WriteResult(scratch, "a", 600.0);

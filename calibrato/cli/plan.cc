@@ -27,8 +27,8 @@ struct Options {
   std::string rig;
   std::string policy;
   std::string method;
-  std::string task;  // Empty: the policy's, or intrinsic.
-  std::string carrier = "free";
+  std::string task;     // Empty: the policy's, or intrinsic.
+  std::string carrier;  // Empty: that of the policy's motion, or free.
   std::string rigs;
   DesignArguments design;
   int evaluations = 0;  // 0: kEvaluations.
@@ -90,6 +90,8 @@ PlannedBefore ReadPolicyMotion(const std::string& folder) {
     if (fs::exists(path / "policy.yaml")) {
       const Value header = ReadYaml((path / "policy.yaml").string());
       if (const Value* task = header.Find("task")) before.task = task->AsString();
+    } else if (before.motion.provenance.IsObject()) {
+      if (const Value* task = before.motion.provenance.Find("task")) before.task = task->AsString();
     }
     return before;
   }
@@ -129,6 +131,17 @@ void CheckUse(const Options& options) {
   if (!has_draws && options.design.num_believed != DesignArguments().num_believed) {
     throw InputError({"--believed has no use here", "", "it is how many rigs of --rigs are drawn",
                       "add --rigs paper, or leave it out"});
+  }
+}
+
+// Loops that are done can't be made smaller.
+void CheckExecuted(const Options& options, Motion motion, Carrier carrier, const Rig& rig) {
+  motion.carrier = carrier;
+  const auto planned = PlanMotion(motion, rig);
+  if (const auto* refusal = std::get_if<Refusal>(&planned)) {
+    throw InputError({"the policy's motion can't have been executed", options.policy,
+                      refusal->Describe(),
+                      "give the motion as it was executed, and its --carrier"});
   }
 }
 
@@ -175,6 +188,11 @@ std::string TaskNameOf(const Options& options, const std::optional<PlannedBefore
        "use --task " + *before->task + ", or learn one for " + options.task});
 }
 
+Carrier CarrierOf(const Options& options, const std::optional<PlannedBefore>& before) {
+  if (!options.carrier.empty()) return CarrierFromName(options.carrier);
+  return before ? before->motion.carrier : Carrier::kFree;
+}
+
 // The loops that are not executed yet, designed anew for what is known of the rig by now: within
 // the path and time of the motion as it was, unless told otherwise. @return What it took.
 int64_t PlanRest(const Options& options, MotionDesignProblem problem, Motion* motion) {
@@ -192,10 +210,19 @@ int64_t PlanRest(const Options& options, MotionDesignProblem problem, Motion* mo
   const int wanted = options.evaluations > 0 ? options.evaluations : kEvaluationsOfRest;
   const int evaluations = std::max(1, static_cast<int>(wanted / NumEvaluations(problem)));
   const std::optional<MotionDesign> design = DesignMotion(problem, *motion, {evaluations});
-  if (!design) return NumEvaluations(problem);
+  const auto stays_as_it_was = [] {
+    std::fprintf(stderr, "note: nothing better was found; the rest stays as it was\n");
+  };
+  if (!design) {
+    stays_as_it_was();
+    return evaluations * NumEvaluations(problem);
+  }
   const auto fitting = WithRestThatFits(design->motion, static_cast<size_t>(options.executed),
                                         motion->carrier, problem.rigs.front());
-  if (!fitting) return design->num_information_evaluations;
+  if (!fitting) {
+    stays_as_it_was();
+    return design->num_information_evaluations;
+  }
   const Value provenance = motion->provenance;
   *motion = fitting->timed->motion;
   motion->provenance = provenance;
@@ -214,7 +241,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   if (!options.policy.empty()) before = ReadPolicyMotion(options.policy);
   const std::string task_name = TaskNameOf(options, before);
   const Task task = TaskFromName(task_name);
-  const Carrier carrier = CarrierFromName(options.carrier);
+  const Carrier carrier = CarrierOf(options, before);
   const Rng rng(global.seed);
   std::vector<Rig> rigs = {AsEstimated(ReadRig(options.rig))};
   if (!options.rigs.empty()) {
@@ -229,6 +256,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   int64_t num_evaluations = 0;
   if (before) {
     before->motion.base_pose = BasePoseBeforeBoard(rig, before->motion.base_pose);
+    if (options.executed > 0) CheckExecuted(options, before->motion, carrier, rig);
     motion = Executed(before->motion, carrier, rig);
     if (options.executed > 0) {
       num_evaluations = PlanRest(options, problem, &motion);
@@ -259,7 +287,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
                              .Set("kind", "plan")
                              .Set("task", task_name)
                              .Set("method", before ? "policy" : options.method)
-                             .Set("carrier", options.carrier)
+                             .Set("carrier", CarrierName(carrier))
                              .Set("path_length_m", PathLength(motion))
                              .Set("motion_s", Duration(motion))
                              .Set("information_evaluations", num_evaluations)
@@ -292,7 +320,7 @@ Action SetUpPlan(CLI::App& app, const GlobalOptions& global) {
       ->check(CLI::Range(1, 1000));
   app.add_option("--task", options->task,
                  "intrinsic, extrinsic or joint (the policy's; with --method intrinsic)");
-  app.add_option("--carrier", options->carrier, "free or arm")->capture_default_str();
+  app.add_option("--carrier", options->carrier, "free or arm (the policy's; with --method free)");
   app.add_option("--rigs", options->rigs,
                  "A distribution of which rigs are drawn that the motion must suit as well");
   AddDesignArguments(app, &options->design);

@@ -259,6 +259,7 @@ TEST(Learn, InTwoProcessesWritesTheBytesOfOne) {
   const Ended ended = RunningProgram(InRounds(together), std::nullopt, *mpirun).Wait();
   EXPECT_EQ(ended.exit_code, 0) << ended.err;
   // One process speaks.
+  EXPECT_NE(ended.out.find("episodes"), std::string::npos) << ended.out;
   EXPECT_EQ(ended.out.find("episodes"), ended.out.rfind("episodes")) << ended.out;
   ExpectSameFiles(ResultFiles(alone), ResultFiles(together));
 

@@ -159,7 +159,8 @@ std::string ComparisonText(const CameraImuComparison& comparison, double level) 
     for (size_t k = 0; k < group.names.size(); ++k) {
       const auto index = static_cast<Eigen::Index>(k);
       text += Format("  %-24s %+.3e", group.names[k].c_str(), group.difference(index));
-      if (group.sigma.size() != 0) {
+      // What both held has no sigma.
+      if (group.sigma.size() != 0 && group.sigma(index) > 0.0) {
         text += Format("  (%.1f sigma)", std::abs(group.difference(index)) / group.sigma(index));
       }
       text += "\n";

@@ -101,6 +101,22 @@ TEST(CompareCameraImuResults, IsInconclusiveWithoutACovariance) {
   EXPECT_EQ(value.At("groups").elements()[0].Find("probability"), nullptr);
 }
 
+TEST(CompareCameraImuResults, CountsNoSigmasOfWhatWasHeld) {
+  const SyntheticCameraImu rig;
+  Eigen::VectorXd variances = Eigen::VectorXd::Constant(7, 1e-6);
+  variances(6) = 0.0;
+  const auto held_at = [&](double time_offset_s) {
+    return Write({{rig.model, rig.T_c_i[0], time_offset_s, 0.0}}, kNames, variances.asDiagonal());
+  };
+  for (const double other : {0.007, 0.008}) {
+    const std::string text = ComparisonText(Compare(held_at(0.007), held_at(other)));
+    EXPECT_NE(text.find("cam0.time_offset"), std::string::npos) << text;
+    EXPECT_NE(text.find("(0.0 sigma)"), std::string::npos) << text;
+    EXPECT_EQ(text.find("nan sigma"), std::string::npos) << text;
+    EXPECT_EQ(text.find("inf sigma"), std::string::npos) << text;
+  }
+}
+
 TEST(CompareCameraImuResults, RefusesOtherRigs) {
   const SyntheticCameraImu rig;
   const CameraCalibrationState camera{rig.model, rig.T_c_i[0], 0.007, 0.0};

@@ -1,5 +1,6 @@
 #include "calibrato/diagnosis/merge_document.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -50,23 +51,53 @@ ImuIntrinsics IntrinsicsOf(const ParameterGroup& group, ImuIntrinsics intrinsics
   return intrinsics;
 }
 
-bool SameLenses(const std::vector<Camera>& a, const std::vector<Camera>& b) {
-  if (a.size() != b.size()) return false;
-  for (size_t n = 0; n < a.size(); ++n) {
-    if (a[n].model.name() != b[n].model.name() || !(a[n].resolution == b[n].resolution) ||
-        a[n].model.parameters() != b[n].model.parameters()) {
-      return false;
-    }
+// A folder may hold a result of one run beside the chain or the IMUs of another.
+void CheckFiles(const ResultFolder& folder, const std::string& kind) {
+  const auto check = [&](const char* key, const std::string& file, size_t in_file) {
+    const size_t in_result = folder.result.At(key).size();
+    if (in_result == in_file) return;
+    throw InputError({"result.json and " + file + " are not of one calibration", folder.name,
+                      std::to_string(in_result) + " and " + std::to_string(in_file) + " " + key,
+                      "calibrate again"});
+  };
+  const bool has_imu = kind == "camera-imu";
+  check("cameras", has_imu ? "camchain-imucam.yaml" : "camchain.yaml",
+        CameraChainFromValue(folder.chain, nullptr).size());
+  if (has_imu) check("imus", "imu.yaml", ImusFromValue(folder.imus, nullptr).size());
+}
+
+bool AreSameCameras(const std::vector<Camera>& a, const std::vector<Camera>& b) {
+  return std::equal(
+      a.begin(), a.end(), b.begin(), b.end(), [](const Camera& one, const Camera& other) {
+        return one.model.name() == other.model.name() && one.resolution == other.resolution;
+      });
+}
+
+void CheckSameCameras(const std::vector<ResultFolder>& folders) {
+  const std::vector<Camera> first = CameraChainFromValue(folders.front().chain, nullptr);
+  for (const ResultFolder& folder : folders) {
+    if (AreSameCameras(first, CameraChainFromValue(folder.chain, nullptr))) continue;
+    throw InputError(
+        {"the results are of different cameras", folder.name,
+         "their number, a model or a resolution is not that of " + folders.front().name,
+         "merge calibrations of one rig, with the same models and images of one size"});
   }
-  return true;
+}
+
+// @pre the same cameras
+bool HaveSameLenses(const std::vector<Camera>& a, const std::vector<Camera>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Camera& one, const Camera& other) {
+                      return one.model.parameters() == other.model.parameters();
+                    });
 }
 
 // Extrinsics depend on the lens: where it was given, it must have been the same.
-void CheckLenses(const std::vector<ResultFolder>& folders, const MergedCalibration& merged) {
+void CheckHeldLenses(const std::vector<ResultFolder>& folders, const MergedCalibration& merged) {
   if (Find(merged, "cam0 lens") != nullptr) return;
   const std::vector<Camera> first = CameraChainFromValue(folders.front().chain, nullptr);
   for (const ResultFolder& folder : folders) {
-    if (SameLenses(first, CameraChainFromValue(folder.chain, nullptr))) continue;
+    if (HaveSameLenses(first, CameraChainFromValue(folder.chain, nullptr))) continue;
     throw InputError({"the results are of different lenses", folder.name,
                       "its cameras' intrinsics are not those of " + folders.front().name,
                       "calibrate all recordings with the same --cameras"});
@@ -80,6 +111,8 @@ Eigen::Vector3d MeanOf(const std::vector<ResultFolder>& folders, size_t imu, con
   }
   return sum / static_cast<double>(folders.size());
 }
+
+Value NumberOrNull(double number) { return std::isfinite(number) ? Value(number) : Value(); }
 
 Value GroupValue(const MergedCalibration::Group& group, const Eigen::VectorXd& merged_sigma) {
   Value parameters = Value::Array();
@@ -102,9 +135,10 @@ Value GroupValue(const MergedCalibration::Group& group, const Eigen::VectorXd& m
   }
   return Value::Object()
       .Set("name", merged.name)
-      .Set("probability", group.scatter.probability)
-      .Set("statistic", group.scatter.statistic)
-      .Set("degrees_of_freedom", group.scatter.degrees)
+      // A group that was held does not scatter.
+      .Set("probability", NumberOrNull(group.scatter.probability))
+      .Set("statistic", NumberOrNull(group.scatter.statistic))
+      .Set("degrees_of_freedom", NumberOrNull(group.scatter.degrees))
       .Set("sigma_scale", group.sigma_scale)
       .Set("parameters", std::move(parameters));
 }
@@ -192,11 +226,13 @@ MergedDocuments MergeResults(const std::vector<ResultFolder>& folders) {
                         "merge cameras with cameras, and cameras with an IMU with such"});
     }
     results.push_back(ParametersOf(folder.result, &folder.chain));
+    CheckFiles(folder, kind);
     names.push_back(folder.name);
   }
+  CheckSameCameras(folders);
   const MergedCalibration merged = MergeCalibrations(results, names);
   const bool has_imu = kind == "camera-imu";
-  if (has_imu) CheckLenses(folders, merged);
+  if (has_imu) CheckHeldLenses(folders, merged);
 
   std::vector<Camera> cameras = CameraChainFromValue(folders.front().chain, nullptr);
   const Eigen::VectorXd sigma = merged.covariance.diagonal().cwiseSqrt();

@@ -26,7 +26,8 @@ struct MergedDocuments {
   ///  "groups": [{"name", "probability", "statistic", "degrees_of_freedom", "sigma_scale",
   ///  "parameters": [{"name", "value", "sigma", "repeatability", "stated_sigma", "deviations":
   ///  [..], "sigmas": [..]}]}]}
-  /// `value` is null for rotations, whose deviations are turns about the merged one; `stated_sigma`
+  /// `value` is null for rotations, whose deviations are turns about the merged one; `probability`,
+  /// `statistic` and `degrees_of_freedom` are null for a group that was held; `stated_sigma`
   /// is the root of the mean square of the results' own sigmas, to be held against
   /// `repeatability`.
   Value result;
@@ -34,8 +35,9 @@ struct MergedDocuments {
   Value imus;   ///< As the inputs'; null for cameras alone.
 };
 
-/// @throws InputError: not calibrations, of different kinds or cameras, or what MergeCalibrations
-/// refuses; of cameras with an IMU also where lenses that were held differ.
+/// @throws InputError: not calibrations, of different kinds or cameras (number, model, resolution),
+/// a chain or IMUs that are not of the result beside them, or what MergeCalibrations refuses; of
+/// cameras with an IMU also where lenses that were held differ.
 [[nodiscard]] MergedDocuments MergeResults(const std::vector<ResultFolder>& folders);
 
 /// In plain text, for the terminal.

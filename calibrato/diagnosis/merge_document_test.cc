@@ -4,6 +4,9 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "calibrato/base/full_sample_for_test.h"
 #include "calibrato/base/input_error.h"
@@ -246,6 +249,94 @@ TEST(MergeResults, RefusesWhatIsNotOfOneRig) {
                InputError);
   EXPECT_NO_THROW((void)MergeResults(
       {Pinhole({600.0, 600.0, 320.0, 240.0}, held), Pinhole({601.0, 600.0, 320.0, 240.0}, held)}));
+}
+
+std::string ErrorOf(const std::vector<ResultFolder>& folders) {
+  try {
+    (void)MergeResults(folders);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MergeResults, RefusesFilesThatAreNotOfOneCalibration) {
+  const ResultFolder good = OnImu(Rigid3{}, 0.0);
+  ASSERT_EQ(ErrorOf({good, good}), "");
+  std::vector<Camera> cameras = CameraChainFromValue(good.chain, nullptr);
+  cameras.push_back(cameras.front());
+  ResultFolder more_cameras = good;
+  more_cameras.chain = ToValue(cameras);
+  ResultFolder more_imus = good;
+  more_imus.imus = ToValue(std::vector<Imu>(2));
+  ResultFolder alone = Pinhole({600.0, 600.0, 320.0, 240.0}, Eigen::Matrix4d::Identity());
+  alone.chain = ToValue(cameras);
+  for (const auto& [folder, file] :
+       {std::pair(more_cameras, "camchain-imucam.yaml"), std::pair(more_imus, "imu.yaml"),
+        std::pair(alone, "camchain.yaml")}) {
+    const std::string said =
+        std::string("result.json and ") + file + " are not of one calibration, recording: 1 and 2";
+    // Both alike, so that nothing but the folder itself tells.
+    EXPECT_NE(ErrorOf({folder, folder}).find(said), std::string::npos)
+        << file << ": " << ErrorOf({folder, folder});
+  }
+}
+
+TEST(MergeResults, RefusesDifferentCameras) {
+  const CameraModel lens("pinhole-none", Eigen::Vector4d(600.0, 600.0, 320.0, 240.0));
+  const CameraModel omni("omni-none", Eigen::Vector<double, 5>(1.0, 600.0, 600.0, 320.0, 240.0));
+  const ResultFolder first = Pinhole({600.0, 600.0, 320.0, 240.0}, Eigen::Matrix4d::Identity());
+  const auto with = [](ResultFolder folder, const CameraModel& model,
+                       const Resolution& resolution) {
+    folder.chain = ToValue(std::vector<Camera>{{model, resolution, "/cam0/image_raw", {}}});
+    return folder;
+  };
+  // A lens that was estimated along may differ, its model and its images may not.
+  ResultFolder along = OnImu(Rigid3{}, 0.0);
+  const std::vector<std::string> names = {
+      "cam0.rot_x", "cam0.rot_y", "cam0.rot_z", "cam0.pos_x", "cam0.pos_y",      "cam0.pos_z",
+      "cam0.fu",    "cam0.fv",    "cam0.pu",    "cam0.pv",    "cam0.time_offset"};
+  along.result.Set("covariance", CovarianceValue(names, 1e-6 * Eigen::MatrixXd::Identity(11, 11)));
+  const std::string what = "the results are of different cameras";
+  for (const ResultFolder& folder : {first, along}) {
+    EXPECT_EQ(ErrorOf({folder, with(folder, lens, {640, 480})}), "");
+    EXPECT_NE(ErrorOf({folder, with(folder, lens, {1280, 960})}).find(what), std::string::npos);
+  }
+  EXPECT_NE(ErrorOf({first, with(first, omni, {640, 480})}).find(what), std::string::npos);
+  ResultFolder two = first;
+  const Value camera = first.result.At("cameras").elements()[0];
+  two.result.Set("cameras", Value::Array().Append(camera).Append(camera));
+  two.chain = ToValue(std::vector<Camera>(2, {lens, {640, 480}, "/cam0/image_raw", {}}));
+  EXPECT_NE(ErrorOf({first, two}).find(what), std::string::npos);
+}
+
+TEST(MergeResults, SaysOfWhatWasHeldNothingAboutItsScatter) {
+  // Rotation and time offset held: a rotation less itself is zero but for rounding.
+  const std::vector<std::string> names = {"cam0.rot_x",      "cam0.rot_y", "cam0.rot_z",
+                                          "cam0.pos_x",      "cam0.pos_y", "cam0.pos_z",
+                                          "cam0.time_offset"};
+  Eigen::VectorXd variances = Eigen::VectorXd::Zero(7);
+  variances.segment<3>(3).setConstant(1e-6);
+  const auto held = [&](const Rigid3& T_c_i) {
+    ResultFolder folder = OnImu(T_c_i, 0.007);
+    folder.result.Set("covariance", CovarianceValue(names, variances.asDiagonal()));
+    return folder;
+  };
+  const Eigen::Matrix3d R = ExpSo3({0.3, -0.2, 1.0});
+  const Eigen::Matrix3d rounded = ExpSo3({1e-15, 0.0, 0.0}) * R;
+  const MergedDocuments merged =
+      MergeResults({held({R, {0.05, 0.0, 0.01}}), held({rounded, {0.052, 0.0, 0.01}})});
+  const Value& offset = merged.result.At("groups").elements()[1];
+  EXPECT_EQ(offset.At("name").AsString(), "cam0 time offset");
+  for (const char* key : {"probability", "statistic", "degrees_of_freedom"}) {
+    EXPECT_EQ(offset.Find(key), nullptr) << key;
+  }
+  EXPECT_NE(MergeText(merged.result).find("cam0 time offset\n"), std::string::npos);
+  // A microradian is more than rounding.
+  EXPECT_NE(ErrorOf({held({R, {0.05, 0.0, 0.01}}),
+                     held({ExpSo3({1e-6, 0.0, 0.0}) * R, {0.05, 0.0, 0.01}})})
+                .find("rot_x was held at"),
+            std::string::npos);
 }
 
 TEST(MergeResults, KeepsTheVerdictOfAResultThatIsNotToBeTrusted) {

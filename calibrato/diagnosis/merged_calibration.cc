@@ -74,7 +74,9 @@ void CheckSameParameters(const std::vector<ResultParameters>& results,
       const VectorXd difference = group.DifferenceTo(first.groups[g]);
       for (Index k = 0; k < here.size(); ++k) {
         const bool is_held = !(here(k) > 0.0);
-        if (is_held != !(there(k) > 0.0) || (is_held && difference(k) != 0.0)) {
+        // A rotation less itself is zero but for rounding.
+        const bool is_moved = !(std::abs(difference(k)) <= 1e-12);
+        if (is_held != !(there(k) > 0.0) || (is_held && is_moved)) {
           differ("what " + group.names[static_cast<size_t>(k)] + " was held at");
         }
       }

@@ -13,16 +13,6 @@ namespace {
 constexpr const char* kRigPurpose = "evaluation rig";
 constexpr const char* kNoisePurpose = "evaluation noise";
 
-// What fails here fails for every trial.
-void CheckFidelity(const ContestSetting& setting) {
-  if (setting.fidelity == Fidelity::kPhysical && setting.carrier != Carrier::kArm) {
-    throw InputError({"fidelity physical is that of an arm", "",
-                      "the carrier '" + CarrierName(setting.carrier) + "' has no dynamics",
-                      "use --carrier arm, or --fidelity fast"});
-  }
-  if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
-}
-
 // A hand has no dynamics either, whatever the others move on.
 void CheckTrajectories(const ContestSetting& setting, const std::vector<Contestant>& contestants) {
   if (setting.fidelity != Fidelity::kPhysical) return;
@@ -51,6 +41,15 @@ Trial TrialOf(const ContestSetting& setting, const Rig& rig, const ExecutableMot
 }
 
 }  // namespace
+
+void CheckFidelity(const ContestSetting& setting) {
+  if (setting.fidelity == Fidelity::kPhysical && setting.carrier != Carrier::kArm) {
+    throw InputError({"fidelity physical is that of an arm", "",
+                      "the carrier '" + CarrierName(setting.carrier) + "' has no dynamics",
+                      "use --carrier arm, or --fidelity fast"});
+  }
+  if (setting.fidelity == Fidelity::kRendered) const HeadlessGl opens;
+}
 
 std::vector<Rig> RigsUnderTrial(const ContestSetting& setting) {
   const auto num_rigs = static_cast<size_t>(setting.num_rigs);

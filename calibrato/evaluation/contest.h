@@ -47,7 +47,11 @@ struct ContestSetting {
 /// trials[contestant][member][rig].
 using ContestTrials = std::vector<std::vector<std::vector<Trial>>>;
 
+/// What fails here fails for every trial.
 /// @throws InputError for a fidelity that the carrier or the machine does not have.
+void CheckFidelity(const ContestSetting& setting);
+
+/// @throws InputError as CheckFidelity does.
 [[nodiscard]] ContestTrials RunContest(const ContestSetting& setting, const std::vector<Rig>& rigs,
                                        const std::vector<Contestant>& contestants);
 

@@ -20,12 +20,16 @@ constexpr const char* kHandcrafted = "handcrafted";
 constexpr const char* kRobust = "robust";
 constexpr const char* kOracle = "oracle";
 
-// Of this thread [s]: loops inside a body of a parallel loop stay on its thread.
-double ThreadSeconds() {
+double SecondsOf(clockid_t clock) {
   timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
+
+// Of this thread [s]: loops inside a body of a parallel loop stay on its thread.
+double ThreadSeconds() { return SecondsOf(CLOCK_THREAD_CPUTIME_ID); }
+// Of all threads [s], for what is not beside anything else.
+double ProcessSeconds() { return SecondsOf(CLOCK_PROCESS_CPUTIME_ID); }
 
 MotionDesignProblem ProblemOf(const ContestSetting& setting, const Rig& scene,
                               const FourRowsOptions& options) {
@@ -40,7 +44,9 @@ MotionDesignProblem ProblemOf(const ContestSetting& setting, const Rig& scene,
   problem.max_path_m = budget.path_m;
   problem.max_duration_s = budget.duration_s;
   problem.rigs =
-      BelievedRigs(setting.rigs, options.num_believed, Rng(setting.seed).Stream("believed"), scene);
+      // Of a rig file there is that one alone.
+      BelievedRigs(setting.rigs, setting.fixed_rig ? 0 : options.num_believed,
+                   Rng(setting.seed).Stream("believed"), scene);
   return problem;
 }
 
@@ -82,10 +88,11 @@ MadeForRigs MakeForRigs(const std::string& policy, const std::vector<Rig>& rigs,
   return all;
 }
 
-int64_t EpisodesIn(const Motion& motion) {
+// What the motion says it took; 0 if nothing.
+int64_t CountIn(const Motion& motion, const std::string& key) {
   const Value& provenance = motion.provenance;
-  const Value* episodes = provenance.IsObject() ? provenance.Find("episodes") : nullptr;
-  return episodes == nullptr ? 0 : episodes->AsInt();
+  const Value* count = provenance.IsObject() ? provenance.Find(key) : nullptr;
+  return count == nullptr ? 0 : count->AsInt();
 }
 
 class Evaluation {
@@ -102,7 +109,7 @@ class Evaluation {
   void AddDesigns() {
     Add({FixedContestant(kHandcrafted, HandcraftedMotion(setting_.task), setting_.carrier, scene_)},
         {});
-    const double start = ThreadSeconds();
+    const double start = ProcessSeconds();
     MotionDesignProblem one = problem_;
     one.rigs.resize(1);
     const std::optional<MotionDesign> nominal = DesignFromManyStarts(
@@ -123,7 +130,7 @@ class Evaluation {
     }
     row.num_design_evaluations = robust_.num_information_evaluations;
     Add({FixedContestant(kRobust, robust_.motion, setting_.carrier, scene_)}, row);
-    result_.seconds["nominal and robust"] += ThreadSeconds() - start;
+    result_.seconds["nominal and robust"] += ProcessSeconds() - start;
     AddClosedLoop("closed loop", {robust_.motion}, row);
     AddOracle(row);
   }
@@ -135,9 +142,14 @@ class Evaluation {
       PlanningRow row;
       for (const ExecutableMotion& member : brought.motions) {
         if (!member.timed) continue;
-        row.num_episodes += EpisodesIn(member.timed->motion);
+        row.num_episodes += CountIn(member.timed->motion, "episodes");
+        row.num_design_evaluations += CountIn(member.timed->motion, "information_evaluations");
         looped.push_back(member.timed->motion);
       }
+      // A row is the mean of its members, and so are its budgets.
+      const auto num_members = static_cast<int64_t>(std::max<size_t>(1, looped.size()));
+      row.num_episodes /= num_members;
+      row.num_design_evaluations /= num_members;
       Add({brought}, row);
       if (looped.size() != brought.motions.size()) continue;
       AddClosedLoop(brought.policy + ", closed loop", looped, row);
@@ -237,6 +249,7 @@ void SetRatio(const FourRows& task, const PlanningRow& row, const std::string& r
 FourRows EvaluateFourRows(const ContestSetting& setting,
                           const std::vector<MotionUnderTrial>& motions,
                           const FourRowsOptions& options) {
+  CheckFidelity(setting);
   Evaluation evaluation(setting, options);
   evaluation.AddDesigns();
   evaluation.AddBrought(motions);

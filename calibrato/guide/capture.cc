@@ -48,25 +48,30 @@ void Capture(FrameSource& source, GuideSession* session, GrowingRecording* recor
              LatestFrame* latest, const std::function<bool()>& interrupted) {
   using Clock = std::chrono::steady_clock;
   const FrameSource::ImuSink sink{[&](const VectorSample& gyro, const VectorSample& accel) {
-                                    if (recording != nullptr) recording->AddImu(gyro, accel);
-                                    session->AddGyro(gyro);
-                                    session->AddAccel(accel);
+                                    const bool has_gyro = session->AddGyro(gyro);
+                                    const bool has_accel = session->AddAccel(accel);
+                                    if (recording != nullptr && has_gyro && has_accel) {
+                                      recording->AddImu(gyro, accel);
+                                    }
                                   },
                                   [&](const VectorSample& gyro) {
-                                    if (recording != nullptr) recording->AddGyro(gyro);
-                                    session->AddGyro(gyro);
+                                    const bool is_taken = session->AddGyro(gyro);
+                                    if (recording != nullptr && is_taken) recording->AddGyro(gyro);
                                   },
                                   [&](const VectorSample& accel) {
-                                    if (recording != nullptr) recording->AddAccel(accel);
-                                    session->AddAccel(accel);
+                                    const bool is_taken = session->AddAccel(accel);
+                                    if (recording != nullptr && is_taken) {
+                                      recording->AddAccel(accel);
+                                    }
                                   }};
+  const auto stop = [&] { return interrupted() || session->has_ended(); };
   try {
     while (!session->has_ended()) {
       if (interrupted()) {
         session->End("interrupted");
         return;
       }
-      const std::optional<CapturedFrame> frame = source.Next(sink);
+      const std::optional<CapturedFrame> frame = source.Next(sink, stop);
       if (!frame) {
         session->End(source.end_words());
         return;

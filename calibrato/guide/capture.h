@@ -30,10 +30,10 @@ class LatestFrame {
 };
 
 /// Takes frames until the session ends, hint first, then written to the recording before the next
-/// is asked for. When the source ends or fails, or the disk is full, the session ends with the
-/// reason: what was written stays.
+/// is asked for; what the session leaves out is not written. When the source ends or fails, or the
+/// disk is full, the session ends with the reason: what was written stays.
 /// @param recording  Null for none.
-/// @param interrupted  Asked before each frame.
+/// @param interrupted  Asked before each frame, and while a replay waits for one.
 void Capture(FrameSource& source, GuideSession* session, GrowingRecording* recording,
              LatestFrame* latest, const std::function<bool()>& interrupted);
 

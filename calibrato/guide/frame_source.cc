@@ -24,7 +24,8 @@ class CameraSource : public FrameSource {
     resolution_ = first_->image.resolution;
   }
 
-  std::optional<CapturedFrame> Next(const ImuSink& /*sink*/) override {
+  std::optional<CapturedFrame> Next(const ImuSink& /*sink*/,
+                                    const std::function<bool()>& /*stop*/) override {
     std::optional<LiveCamera::Frame> frame = first_ ? std::exchange(first_, {}) : camera_.Next();
     if (!frame) return std::nullopt;
     CapturedFrame captured;
@@ -67,9 +68,15 @@ class ReplaySource : public FrameSource {
       throw InputError({"cannot replay", recording_.path, "its images have no stamps",
                         "replay a recording, not a folder of photos"});
     }
+    if (!recording_.imus.empty()) {
+      const ImuStream& stream = recording_.imus.front().stream;
+      has_common_stamps_ = std::ranges::equal(stream.gyro, stream.accel, {}, &VectorSample::stamp,
+                                              &VectorSample::stamp);
+    }
   }
 
-  std::optional<CapturedFrame> Next(const ImuSink& sink) override {
+  std::optional<CapturedFrame> Next(const ImuSink& sink,
+                                    const std::function<bool()>& stop) override {
     const size_t k = next_++;
     if (k >= num_frames_) return std::nullopt;
     const CameraRecording& camera = recording_.cameras.front();
@@ -85,7 +92,7 @@ class ReplaySource : public FrameSource {
       frame.view = std::get<std::vector<BoardView>>(camera.data)[k];
       frame.stamp = frame.view->stamp;
     }
-    WaitUntil(frame.stamp);
+    WaitUntil(frame.stamp, stop);
     if (!recording_.imus.empty()) HandOver(recording_.imus.front().stream, frame.stamp, sink);
     return frame;
   }
@@ -95,26 +102,27 @@ class ReplaySource : public FrameSource {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void WaitUntil(Time stamp) {
+  void WaitUntil(Time stamp, const std::function<bool()>& stop) {
+    constexpr std::chrono::milliseconds kSlice{100};
     if (!begin_) begin_ = Clock::now();
     if (!(speed_ > 0.0)) return;
-    std::this_thread::sleep_until(
+    const Clock::time_point due =
         *begin_ + std::chrono::nanoseconds(static_cast<int64_t>(
-                      static_cast<double>((stamp - first_).nanoseconds()) / speed_)));
+                      static_cast<double>((stamp - first_).nanoseconds()) / speed_));
+    while (Clock::now() < due && !stop()) {
+      std::this_thread::sleep_until(std::min(due, Clock::now() + kSlice));
+    }
   }
 
   void HandOver(const ImuStream& stream, Time until, const ImuSink& sink) {
     const auto is_next = [&](const std::vector<VectorSample>& samples, size_t k) {
       return k < samples.size() && samples[k].stamp <= until;
     };
-    while (is_next(stream.gyro, next_gyro_) && is_next(stream.accel, next_accel_) &&
-           stream.gyro[next_gyro_].stamp == stream.accel[next_accel_].stamp) {
-      sink.both(stream.gyro[next_gyro_++], stream.accel[next_accel_++]);
-    }
-    if (stream.gyro.size() == stream.accel.size() && next_gyro_ == next_accel_) {
-      const bool is_common = next_gyro_ >= stream.gyro.size() ||
-                             stream.gyro[next_gyro_].stamp == stream.accel[next_accel_].stamp;
-      if (is_common) return;
+    if (has_common_stamps_) {
+      while (is_next(stream.gyro, next_gyro_)) {
+        sink.both(stream.gyro[next_gyro_++], stream.accel[next_accel_++]);
+      }
+      return;
     }
     while (is_next(stream.gyro, next_gyro_)) sink.gyro(stream.gyro[next_gyro_++]);
     while (is_next(stream.accel, next_accel_)) sink.accel(stream.accel[next_accel_++]);
@@ -127,6 +135,7 @@ class ReplaySource : public FrameSource {
   Time last_;
   size_t num_frames_ = 0;
   size_t next_ = 0;
+  bool has_common_stamps_ = false;  // Of all IMU samples: a recording keeps one list, or two.
   size_t next_gyro_ = 0;
   size_t next_accel_ = 0;
   std::optional<Clock::time_point> begin_;

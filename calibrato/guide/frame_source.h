@@ -29,14 +29,18 @@ class FrameSource {
   FrameSource& operator=(const FrameSource&) = delete;
 
   struct ImuSink {
+    /// Of an IMU whose gyroscope and accelerometer have all their stamps in common ...
     std::function<void(const VectorSample& gyro, const VectorSample& accel)> both;
-    std::function<void(const VectorSample& gyro)> gyro;  ///< Where their stamps differ.
+    /// ... and these of any other: a source calls the one or the two, never all three.
+    std::function<void(const VectorSample& gyro)> gyro;
     std::function<void(const VectorSample& accel)> accel;
   };
   /// Waits for the next frame. IMU samples before it go to the sink.
+  /// @param stop  Asked while a replay waits: once it says so, the frame comes at once.
   /// @return nothing at the end: the camera is gone, or the recording is over.
   /// @throws InputError what its reading throws.
-  [[nodiscard]] virtual std::optional<CapturedFrame> Next(const ImuSink& sink) = 0;
+  [[nodiscard]] virtual std::optional<CapturedFrame> Next(const ImuSink& sink,
+                                                          const std::function<bool()>& stop) = 0;
   [[nodiscard]] virtual Resolution resolution() const = 0;
   /// What its end means, in words.
   [[nodiscard]] virtual std::string end_words() const = 0;

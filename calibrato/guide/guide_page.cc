@@ -88,8 +88,9 @@ std::optional<HttpResponse> PageAccess::Check(const HttpRequest& request) {
     next_token = token_;
     welcome.status = 303;
     welcome.headers["Location"] = "/";
+    // Lax: Strict would not come along to "/" where the address was opened from a message.
     welcome.headers["Set-Cookie"] =
-        std::string(kCookie) + "=" + session + "; HttpOnly; SameSite=Strict; Path=/";
+        std::string(kCookie) + "=" + session + "; HttpOnly; SameSite=Lax; Path=/";
   }
   on_new_token_(next_token);
   return welcome;

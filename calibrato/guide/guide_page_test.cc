@@ -155,6 +155,7 @@ TEST_F(ServedPage, OnTheNetworkTakesATokenThatIsGoodForOneBrowser) {
   EXPECT_EQ(StatusOf(Get(port(), "/state", "Cookie: calibrato_guide=\r\n")), 403);
   const std::string welcome = Get(port(), "/?token=" + token);
   ASSERT_EQ(StatusOf(welcome), 303);
+  EXPECT_NE(welcome.find("; HttpOnly; SameSite=Lax;"), std::string::npos);
   const size_t at = welcome.find("calibrato_guide=");
   const std::string cookie = "Cookie: " + welcome.substr(at, welcome.find(';', at) - at) + "\r\n";
   EXPECT_EQ(StatusOf(Get(port(), "/state", cookie)), 200);

@@ -128,33 +128,41 @@ bool GuideSession::AddSearchedView(Time stamp, std::optional<BoardView> view, bo
   }
   if (!gesture_ || now_s - gesture_begin_s_ > gesture_->duration_s + kWay) TakeNextGesture();
   if (now_s >= options_.max_duration_s) ended_ = "the time is over";
-  if (!solved_until_s_ || now_s - *solved_until_s_ >= options_.solve_period_s) {
+  if (!solving_until_s_ || now_s - *solving_until_s_ >= options_.solve_period_s) {
     wants_solve_ = start_.has_value();
     if (wants_solve_) changed_.notify_all();
   }
   return true;
 }
 
-void GuideSession::AddGyro(const VectorSample& sample) {
+bool GuideSession::AddGyro(const VectorSample& sample) {
   const std::lock_guard lock(mutex_);
-  AddSample(sample, &data_.imu.gyro, "gyroscope");
+  return AddSample(sample, &data_.imu.gyro, "gyroscope");
 }
 
-void GuideSession::AddAccel(const VectorSample& sample) {
+bool GuideSession::AddAccel(const VectorSample& sample) {
   const std::lock_guard lock(mutex_);
-  AddSample(sample, &data_.imu.accel, "accelerometer");
+  return AddSample(sample, &data_.imu.accel, "accelerometer");
 }
 
-void GuideSession::AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
+void GuideSession::AddWarning(const std::string& words) {
+  const std::lock_guard lock(mutex_);
+  Warn(words);
+}
+
+bool GuideSession::AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
                              const char* sensor) {
-  if (ended_) return;
+  if (ended_) return false;
   if (!sample.value.allFinite()) {
     Warn(std::string("the ") + sensor + " gave a sample that is no number");
-  } else if (!samples->empty() && sample.stamp <= samples->back().stamp) {
-    Warn(std::string("a stamp of the ") + sensor + " did not ascend");
-  } else {
-    samples->push_back(sample);
+    return false;
   }
+  if (!samples->empty() && sample.stamp <= samples->back().stamp) {
+    Warn(std::string("a stamp of the ") + sensor + " did not ascend");
+    return false;
+  }
+  samples->push_back(sample);
+  return true;
 }
 
 void GuideSession::Warn(const std::string& words) {
@@ -208,6 +216,7 @@ void GuideSession::SolveAgainAndAgain() {
     if (stop_) return;
     wants_solve_ = false;
     const double now_s = SecondsSince(first_stamp_, last_stamp_);
+    solving_until_s_ = now_s;
     const double rate_hz = now_s > 1.0 ? num_frames_ / now_s : 20.0;
     GuideData data = data_;
     BoardView start = *start_;

@@ -64,8 +64,11 @@ class GuideSession {
   /// The same of a frame that was searched already.
   bool AddView(Time stamp, std::optional<BoardView> view);
   /// Samples in order of time; not finite or not ascending ones are left out, with a warning.
-  void AddGyro(const VectorSample& sample);
-  void AddAccel(const VectorSample& sample);
+  /// @return false where it was left out.
+  bool AddGyro(const VectorSample& sample);
+  bool AddAccel(const VectorSample& sample);
+  /// Shown for the next seconds, once however often it is given.
+  void AddWarning(const std::string& words);
 
   /// Ends it, for a reason of the caller's: "the camera is gone". The first reason stands.
   void End(const std::string& why);
@@ -81,7 +84,7 @@ class GuideSession {
     double at_s = 0.0;
   };
   void Warn(const std::string& words);
-  void AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
+  bool AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
                  const char* sensor);
   void TakeNextGesture();
   bool AddSearchedView(Time stamp, std::optional<BoardView> view, bool is_sharp);
@@ -113,7 +116,8 @@ class GuideSession {
   double last_check_s_ = 0.0;
   std::vector<Warning> warnings_;
   std::optional<std::string> ended_;
-  std::optional<double> solved_until_s_;
+  std::optional<double> solving_until_s_;  // What the latest solve takes in, done or not ...
+  std::optional<double> solved_until_s_;   // ... and the latest that is done.
   bool stop_ = false;
   bool wants_solve_ = false;
   std::thread solver_;

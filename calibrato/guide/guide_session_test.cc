@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <variant>
+#include <vector>
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/value.h"
@@ -49,8 +52,9 @@ class Unplugged : public FrameSource {
       : replay_(OpenReplaySource(RecordingOf(truth), 0.0, {})),
         num_left_(num_frames),
         throws_(throws) {}
-  std::optional<CapturedFrame> Next(const ImuSink& sink) override {
-    if (num_left_-- > 0) return replay_->Next(sink);
+  std::optional<CapturedFrame> Next(const ImuSink& sink,
+                                    const std::function<bool()>& stop) override {
+    if (num_left_-- > 0) return replay_->Next(sink, stop);
     if (throws_) throw InputError({"cannot read frame", "device", "no such device", ""});
     return std::nullopt;
   }
@@ -76,7 +80,7 @@ TEST(GuideSession, AsksForGesturesAndEndsWhenAllIsReached) {
                                   {},
                                   {}};
   bool has_hint = false;
-  for (int k = 0; auto frame = source->Next(sink); ++k) {
+  for (int k = 0; auto frame = source->Next(sink, [] { return false; }); ++k) {
     session.AddView(frame->stamp, frame->view);
     if (k % 40 == 0) session.WaitForSolve();
     const GuideSnapshot snapshot = session.Snapshot();
@@ -111,9 +115,12 @@ TEST(GuideSession, WarnsOfStampsSilenceAndALostBoard) {
   EXPECT_NE(std::find(warnings.begin(), warnings.end(), "the board is not seen"), warnings.end());
   EXPECT_NE(std::find(warnings.begin(), warnings.end(), "the IMU is silent"), warnings.end());
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  session.AddGyro({at(1.0), {0.0, nan, 0.0}});
+  EXPECT_FALSE(session.AddGyro({at(1.0), {0.0, nan, 0.0}}));
   EXPECT_EQ(session.Snapshot().warnings.back(), "the gyroscope gave a sample that is no number");
   EXPECT_EQ(session.Snapshot().num_imu_samples, 0);
+  for (int k = 0; k < 3; ++k) session.AddWarning("a line is no sample");
+  const auto with_line = session.Snapshot().warnings;
+  EXPECT_EQ(std::count(with_line.begin(), with_line.end(), "a line is no sample"), 1);
   // Warnings pass.
   for (double t = 1.5; t < 6.0; t += 0.1) session.AddView(at(t), view);
   const auto later = session.Snapshot().warnings;
@@ -141,6 +148,73 @@ TEST(Capture, KeepsWhatWasRecordedWhenTheCameraGoes) {
     EXPECT_GT(read.imus[0].stream.gyro.size(), 200U);
     std::filesystem::remove_all(path);
   }
+}
+
+// Plays a recording through a session without a clock, and reads what was kept of it.
+Recording KeptOf(const SyntheticCameraImu& truth, const Recording& played) {
+  const std::string path =
+      std::filesystem::temp_directory_path() / ("calibrato_kept_" + std::to_string(getpid()));
+  std::filesystem::remove_all(path);
+  GuideProblem problem = ProblemOf(truth);
+  problem.wanted.time_offset_s = 1e-12;  // Never reached: it goes on to the end.
+  GuideSession session(truth.board, problem, {});
+  LatestFrame latest;
+  {
+    GrowingRecording recording(path, truth.resolution, 1);
+    const auto source = OpenReplaySource(played, 0.0, {});
+    Capture(*source, &session, &recording, &latest, [] { return false; });
+  }
+  EXPECT_EQ(session.Snapshot().ended, "the recording is over");
+  Recording kept = OpenRecording(path, {});
+  EXPECT_EQ(std::filesystem::exists(path + "/imu0.csv"),
+            !std::filesystem::exists(path + "/gyro0.csv"));
+  std::filesystem::remove_all(path);
+  return kept;
+}
+
+TEST(OpenReplaySource, WaitsInSlicesThatAStopEnds) {
+  const SyntheticCameraImu truth;
+  Recording played = RecordingOf(truth);
+  played.imus.clear();
+  const auto source = OpenReplaySource(std::move(played), 0.01, {});
+  int num_asked = 0;
+  const auto stop = [&] { return ++num_asked == 3; };
+  ASSERT_TRUE(source->Next({}, stop));
+  EXPECT_EQ(num_asked, 0);  // The first is due at once, the second five seconds later.
+  ASSERT_TRUE(source->Next({}, stop));
+  EXPECT_EQ(num_asked, 3);
+}
+
+TEST(Capture, KeepsSensorsOfDifferentRatesInListsOfTheirOwn) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 4.0;
+  Recording played = RecordingOf(truth);
+  std::vector<VectorSample>& accel = played.imus[0].stream.accel;
+  for (size_t k = 0; 2 * k < accel.size(); ++k) accel[k] = accel[2 * k];
+  accel.resize((accel.size() + 1) / 2);
+  const ImuStream kept = KeptOf(truth, played).imus.at(0).stream;
+  // All but those after the last frame.
+  ASSERT_GT(kept.accel.size(), 300U);
+  EXPECT_GT(kept.gyro.size(), 2 * kept.accel.size() - 2);
+  for (size_t k = 0; k < kept.accel.size(); ++k) {
+    EXPECT_EQ(kept.accel[k].stamp, accel[k].stamp);
+    EXPECT_EQ(kept.gyro.at(k).stamp, played.imus[0].stream.gyro[k].stamp);
+  }
+}
+
+TEST(Capture, DoesNotKeepSamplesThatWereLeftOut) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 4.0;
+  Recording played = RecordingOf(truth);
+  ImuStream& stream = played.imus[0].stream;
+  stream.gyro[7].value.y() = std::numeric_limits<double>::quiet_NaN();
+  stream.gyro[11].stamp = stream.accel[11].stamp = stream.gyro[10].stamp;
+  const ImuStream kept = KeptOf(truth, played).imus.at(0).stream;
+  ASSERT_GT(kept.gyro.size(), 300U);
+  EXPECT_EQ(kept.gyro[6].stamp, stream.gyro[6].stamp);
+  EXPECT_EQ(kept.gyro[7].stamp, stream.gyro[8].stamp);
+  EXPECT_EQ(kept.gyro[9].stamp, stream.gyro[10].stamp);
+  EXPECT_EQ(kept.gyro[10].stamp, stream.gyro[12].stamp);
 }
 
 TEST(ParseImuLine, TakesLinesOfListsAndNothingElse) {

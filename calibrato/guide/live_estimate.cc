@@ -146,18 +146,21 @@ void EstimateExtrinsics(const GuideProblem& problem, const GuideData& data,
   }
   const auto places = PlacesOf(wanted, information.names);
   if (!places || information.covariance.size() == 0) return;
+  const Eigen::MatrixXd covariance = information.covariance(*places, *places);
+  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return;
+  Eigen::MatrixXd to_directions =
+      Eigen::MatrixXd::Identity(LayoutOf(problem).size(), LayoutOf(problem).size());
+  constexpr int kGravity = 7;
+  to_directions.block<2, 2>(kGravity, kGravity) = GravityAngles(calibration.state->gravity_g);
+  const Eigen::MatrixXd known = KnowledgeBefore(problem, camera.model) +
+                                to_directions * InverseOf(covariance) * to_directions.transpose();
+  if (!known.allFinite()) return;
   estimate->camera = camera.model;
   estimate->T_c_i = camera.T_c_i;
   estimate->time_offset_s = camera.time_offset_s;
   estimate->gravity_g = calibration.state->gravity_g;
   estimate->corner_noise_px = calibration.weights.corner_noise_px;
-  Eigen::MatrixXd to_directions =
-      Eigen::MatrixXd::Identity(LayoutOf(problem).size(), LayoutOf(problem).size());
-  constexpr int kGravity = 7;
-  to_directions.block<2, 2>(kGravity, kGravity) = GravityAngles(estimate->gravity_g);
-  const Eigen::MatrixXd covariance = information.covariance(*places, *places);
-  estimate->information = KnowledgeBefore(problem, camera.model) +
-                          to_directions * InverseOf(covariance) * to_directions.transpose();
+  estimate->information = known;
   estimate->extrinsics_are_measured = true;
 }
 

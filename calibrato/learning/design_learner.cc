@@ -320,14 +320,16 @@ class DesignLearner {
     for (size_t i = 0; i < result_.motion.loops.size(); ++i) {
       result_.motion.loops[i].duration_s = round.motion.loop_duration_s[i];
     }
-    result_.motion.provenance = Value::Object()
-                                    .Set("method", "learned")
-                                    .Set("task", TaskName(result_.task))
-                                    .Set("preset", "best")
-                                    .Set("seed", std::to_string(options_.seed))
-                                    .Set("episodes", NumEpisodes())
-                                    .Set("round", best + 1)
-                                    .Set("trusted", ToValue(LimitsOf(round.trust)));
+    result_.motion.provenance =
+        Value::Object()
+            .Set("method", "learned")
+            .Set("task", TaskName(result_.task))
+            .Set("preset", "best")
+            .Set("seed", std::to_string(options_.seed))
+            .Set("episodes", NumEpisodes())
+            .Set("information_evaluations", progress_.num_information_evaluations)
+            .Set("round", best + 1)
+            .Set("trusted", ToValue(LimitsOf(round.trust)));
     if (team_.is_first()) WriteDesignPolicy(folder_ + "/policy", NameOfRun(), result_.motion);
     char text[200];
     std::snprintf(text, sizeof(text), "done: %d episodes; the motion of round %zu of %zu, %s",

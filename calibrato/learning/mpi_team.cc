@@ -26,7 +26,9 @@ class MpiTeam final : public Team {
  public:
   // Errors of MPI end all processes, its default.
   MpiTeam() {
-    MPI_Init(nullptr, nullptr);
+    // Other threads calculate; this one alone talks.
+    int provided = 0;
+    MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &size_);
   }

@@ -28,7 +28,9 @@ TEST(MapOver, GivesEveryProcessAllResultsInTheirOrder) {
 TEST(MapOver, CallsEachIndexInOneProcess) {
   const auto called = RunAsTeam(3, [](Team& team) {
     std::string mine;
+    std::mutex mutex;
     (void)MapOver(team, 4, [&](size_t i) {
+      const std::lock_guard lock(mutex);
       mine += std::to_string(i);
       EXPECT_TRUE(IsMine(team, i));
       return std::string();

@@ -124,7 +124,13 @@ void GrowingRecording::AppendRows(const std::string& name, std::string_view rows
     if (size < 0 && errno == EINTR) continue;
     if (size < 0) {
       const int error = errno;
-      // Half a row would make the list unreadable.
+      if (before == 0) {  // A list without rows would make the whole folder unreadable ...
+        close(fd);
+        lists_.erase(name);
+        unlink(path.c_str());
+        Fail(path, error);
+      }
+      // ... and half a row the list.
       if (ftruncate(fd, before) != 0) Fail(path, errno);
       Fail(path, error);
     }

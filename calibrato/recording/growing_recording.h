@@ -13,12 +13,12 @@
 namespace calibrato {
 
 /// A recording folder that is written while its sensors run: cam0/STAMP.png image by image, or
-/// cam0_corners.csv view by view; imu0.csv (or gyro0.csv and accel0.csv) sample by sample. At every
-/// moment, and after any end, the folder is a recording that OpenRecording reads: an image has its
-/// name only once it is complete, and rows are appended whole (empty lines keep them from lying on
-/// two pages of the file, where a write can be cut in two). What was handed over before the
-/// process was killed is kept; so is, up to the last whole row, what was there when the disk was
-/// full.
+/// cam0_corners.csv view by view; imu0.csv (or gyro0.csv and accel0.csv) sample by sample. Once
+/// each sensor has a sample, the folder is at every moment, and after any end, a recording that
+/// OpenRecording reads: an image has its name only once it is complete, and rows are appended whole
+/// (empty lines keep them from lying on two pages of the file, where a write can be cut in two).
+/// What was handed over before the process was killed is kept; so is, up to the last whole row,
+/// what was there when the disk was full; a list whose first row did not fit is gone again.
 class GrowingRecording {
  public:
   /// Makes the folder.

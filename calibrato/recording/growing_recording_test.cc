@@ -94,14 +94,16 @@ TEST(GrowingRecording, OutlivesItsProcess) {
         recording.AddImu(Sample(k), Sample(k));
       }
     }
-    usleep(60'000 + 7'000 * static_cast<useconds_t>(run));
+    const std::string fifth = path + "/cam0/" + std::to_string(At(4).nanoseconds()) + ".png";
+    for (int k = 0; k < 3000 && !std::filesystem::exists(fifth); ++k) usleep(10'000);
+    usleep(7'000 * static_cast<useconds_t>(run));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     const Recording read = OpenRecording(path, {});
     const auto& images = std::get<CameraImages>(read.cameras.at(0).data);
     const size_t num_images = images.list.size();
     const size_t num_samples = read.imus.at(0).stream.gyro.size();
-    EXPECT_GT(num_images, 2U);
+    EXPECT_GE(num_images, 5U);
     EXPECT_LE(num_images - num_samples, 1U);
     for (size_t k = 0; k < num_images; ++k) {
       EXPECT_EQ(GreyOf(images.reader->Read(k)).pixels, Image(static_cast<int>(k)).pixels);
@@ -136,6 +138,34 @@ TEST(GrowingRecording, KeepsWholeRowsWhenTheDiskIsFull) {
   const ImuStream& stream = read.imus.at(0).stream;
   ASSERT_GT(stream.gyro.size(), 20U);
   EXPECT_EQ(stream.gyro.back().value, Sample(static_cast<int>(stream.gyro.size()) - 1).value);
+}
+
+TEST(GrowingRecording, KeepsItsImagesWhereNotEvenOneRowFits) {
+  const TestFolder folder;
+  const std::string path = folder.path() + "/rec";
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    GrowingRecording recording(path, {32, 24}, 1);
+    recording.AddImage(At(0), Image(0));
+    const rlimit limit{10, 10};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      recording.AddImu(Sample(0), Sample(0));
+    } catch (const InputError&) {
+      _exit(7);
+    }
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 7);
+  EXPECT_FALSE(std::filesystem::exists(path + "/imu0.csv"));
+  const Recording read = OpenRecording(path, {});
+  EXPECT_EQ(std::get<CameraImages>(read.cameras.at(0).data).list.size(), 1U);
+  EXPECT_TRUE(read.imus.empty());
 }
 
 }  // namespace

@@ -25,6 +25,9 @@ LiveCamera::LiveCamera(const std::string& device) : impl_(std::make_unique<Impl>
                       "give a number as 0, a device as /dev/video0, or an address"});
   }
   impl_->capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+  // Frames that wait in a queue would get stamps of when they leave it. Where a backend has none to
+  // set, as that of streams, nothing changes.
+  impl_->capture.set(cv::CAP_PROP_BUFFERSIZE, 1);
 }
 
 LiveCamera::~LiveCamera() = default;

@@ -67,11 +67,13 @@ Value ImuValue(const Imu& imu) {
 }
 
 // What it estimates with, beside the calibration: the settings of its own examples. It refuses a
-// configuration in which one of these keys is missing.
+// configuration in which one of its keys is missing: 2.7 asks for `integration`, versions before it
+// for use_imuavg and use_rk4int; what a version does not ask for it passes over.
 constexpr const char* kEstimatorSettings = R"(verbosity: "INFO"
 use_fej: true
 use_imuavg: true
 use_rk4int: true
+integration: "rk4"
 calib_cam_extrinsics: true
 calib_cam_intrinsics: true
 calib_cam_timeoffset: true

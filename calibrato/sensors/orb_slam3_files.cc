@@ -51,7 +51,7 @@ ForeignFiles OrbSlam3Files(const RigCalibration& rig, std::optional<double> came
                       "calibrate the two that it is to use"});
   }
   ForeignFiles files;
-  WarnOfWhatIsLeftOut(rig, kProgram, true, &files.warnings);
+  WarnOfWhatIsLeftOut(rig, kProgram, false, &files.warnings);
   OpenCvYaml yaml;
   yaml.Text("File.version", "1.0").Text("Camera.type", TypeOf(rig.cameras[0]));
   SetCamera(rig.cameras[0], "Camera1", &yaml);
@@ -92,12 +92,14 @@ ForeignFiles OrbSlam3Files(const RigCalibration& rig, std::optional<double> came
         .Real("IMU.GyroWalk", noise.gyro_random_walk)
         .Real("IMU.AccWalk", noise.accel_random_walk)
         .Real("IMU.Frequency", noise.rate_hz);
-    const double offset = rig.on_imu[0].time_offset_s;
-    if (offset != 0.0) {
-      const std::string text = FormatNumber(offset) + " s";
-      yaml.Comment("The images' stamps must be on the IMU's clock: add " + text + " to them");
-      files.warnings.push_back("ORB-SLAM3 has no place for a time offset: add " + text +
-                               " to the images' stamps");
+    for (size_t n = 0; n < num_cameras; ++n) {
+      const double offset = rig.on_imu[n].time_offset_s;
+      if (offset == 0.0) continue;
+      const std::string remedy =
+          "add " + FormatNumber(offset) + " s to the stamps of cam" + std::to_string(n);
+      yaml.Comment("The images' stamps must be on the IMU's clock: " + remedy);
+      files.warnings.push_back(std::string(kProgram) +
+                               " has no place for a time offset: " + remedy);
     }
   }
   yaml.Comment("Features and viewer, as in ORB-SLAM3's own examples: no part of the calibration")

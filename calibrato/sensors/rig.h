@@ -70,7 +70,7 @@ struct Rig {
   double exposure_s = 0.0;                     ///< [s] >= 0; 0 means no motion blur.
   double camera_rate_hz = kPaperCameraRateHz;  ///< [Hz] > 0, at most 1000.
   CornerNoise corner_noise;                    ///< Fidelity `fast` and `physical`.
-  ImageDisturbances image_disturbances;        ///< Fidelity `rendered`.
+  ImageDisturbances image_disturbances;        ///< Times at every fidelity, else `rendered`.
 };
 
 /// RIG.yaml (docs/formats.md section 3). @throws InputError with line and key. Unknown keys are

@@ -113,9 +113,14 @@ ForeignFiles VinsFusionFiles(const RigCalibration& rig) {
   if (rig.imu) {
     const ImuNoise& noise = rig.imu->noise;
     const double root_rate = std::sqrt(noise.rate_hz);
-    yaml.Comment("Of one sample, and of one step of the bias: densities times the root of the rate")
-        .Real("acc_n", noise.accel_noise_density * root_rate)
-        .Real("gyr_n", noise.gyro_noise_density * root_rate)
+    // A step takes the mean of two samples and draws their noise apart: half of acc_n^2 dt^2, which
+    // must be n^2 dt.
+    const double root_double_rate = std::sqrt(2.0 * noise.rate_hz);
+    yaml.Comment(
+            "acc_n, gyr_n: densities times the root of twice the rate; acc_w, gyr_w: random walks "
+            "times the root of the rate")
+        .Real("acc_n", noise.accel_noise_density * root_double_rate)
+        .Real("gyr_n", noise.gyro_noise_density * root_double_rate)
         .Real("acc_w", noise.accel_random_walk * root_rate)
         .Real("gyr_w", noise.gyro_random_walk * root_rate)
         .Real("g_norm", rig.gravity)

@@ -136,7 +136,7 @@ def calibrate_camera(views, resolution, *, model="pinhole-radtan", reject_outlie
 def calibrate_camera_imu(recording, camera, imu):
     """T_cam_imu and time offset. camera: a CameraResult, held; imu: the keys of imu.yaml."""
     return CameraImuResult(**_calibrato.calibrate_camera_imu(
-        list(recording.views), camera.model, np.asarray(camera.parameters),
+        list(recording.views), camera.model, camera.parameters,
         [int(stamp) for stamp in recording.imu_stamps_ns], recording.gyro, recording.accel,
         json.dumps(imu)))
 

@@ -3,6 +3,7 @@
 #
 #   run.sh BUILD_FOLDER
 set -eu
+export CMAKE_GENERATOR=Ninja
 build=$1
 here=$(cd "$(dirname "$0")" && pwd)
 scratch=$(mktemp -d)

@@ -17,6 +17,7 @@ function learnSummary(result) {
   return {
     verdict: result.verdict ?? "learned",
     line: `${capitalised(best)}${over}.`,
+    also: result.termination_text ? [`${capitalised(result.termination_text)}.`] : [],
     details: details.length > 0 ? `${capitalised(details.join(", "))}.` : "",
     findings: list(result.findings),
   };
@@ -118,7 +119,6 @@ function convergenceCard(training) {
   const kCurves = 7;
   const build = () => {
     const lines = training.filter((line) => list(line.best_so_far).length > 1);
-    if (lines.length === 0) return "No search of more than one round was handed over.";
     const count = Math.min(kCurves, lines.length);
     const chosen = Array.from({length: count}, (_, i) =>
       lines[count === 1 ? 0 : Math.round(i * (lines.length - 1) / (count - 1))]);
@@ -172,7 +172,7 @@ function predictionCard(training) {
     };
   };
   return card("Predicted and realised return",
-              "Below the dashed line the networks promised more than came.", plot(build));
+              "Below the dashed line more was promised than came.", plot(build));
 }
 
 function learnSection(result) {
@@ -205,16 +205,23 @@ function learnSection(result) {
         episodeCard(training, "Error at the end of each episode",
                     "Error of the calibration, relative to the true parameters.",
                     logAxis("relative error [1]"), (line) => line.final_relative_error),
-        meanLinesCard(training, "Losses of both networks",
-                      "As the mean of the last 20 episodes.", logAxis("loss"),
-                      (line, name) => line[name], ["dynamics_loss", "reward_loss"]),
-        predictionCard(training),
-        meanLinesCard(training, "Errors of both networks' predictions",
-                      "One step ahead, of the reward as it is and of the observation in standard " +
-                      "deviations; root mean square over an episode, mean of the last 20.",
-                      logAxis("error"), (line, name) => line[name],
-                      ["reward_prediction_error", "observation_prediction_error"]),
-        convergenceCard(training),
+        predictionCard(training));
+    // Where a model is believed there are none.
+    if (training.some((line) => isNumber(line.dynamics_loss) || isNumber(line.reward_loss))) {
+      made.append(
+          meanLinesCard(training, "Losses of both networks",
+                        "As the mean of the last 20 episodes.", logAxis("loss"),
+                        (line, name) => line[name], ["dynamics_loss", "reward_loss"]),
+          meanLinesCard(training, "Errors of both networks' predictions",
+                        "One step ahead, of the reward as it is and of the observation in " +
+                        "standard deviations; root mean square over an episode, mean of the last 20.",
+                        logAxis("error"), (line, name) => line[name],
+                        ["reward_prediction_error", "observation_prediction_error"]));
+    }
+    if (training.some((line) => list(line.best_so_far).length > 1)) {
+      made.append(convergenceCard(training));
+    }
+    made.append(
         episodeCard(training, "Path length of each episode",
                     "Length of the motion, with 1 m a rad.",
                     axis("path [m]", {rangemode: "tozero"}), (line) => line.path_length_m));
