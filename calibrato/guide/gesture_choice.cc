@@ -91,7 +91,7 @@ Eigen::MatrixXd ExpectFromGesture(const GuideProblem& problem, const LiveEstimat
 }
 
 GuidePlan PlanGestures(const GuideProblem& problem, const LiveEstimate& estimate,
-                       const std::vector<Gesture>& gestures, const PlanningOptions& options) {
+                       const std::vector<Gesture>& gestures, const GesturePlanOptions& options) {
   GuidePlan plan;
   plan.is_reached = estimate.is_reached();
   if (plan.is_reached || gestures.empty()) return plan;

@@ -27,7 +27,7 @@ struct GuidePlan {
   bool more_helps = true;
 };
 
-struct PlanningOptions {
+struct GesturePlanOptions {
   double camera_rate_hz = 20.0;
   double way_s = 1.5;     ///< From one gesture to the next, with reading what it is.
   int max_gestures = 40;  ///< Where what is wanted is far away.
@@ -36,6 +36,6 @@ struct PlanningOptions {
 /// Ranks the gestures by expected information and goes on with the best, again and again.
 [[nodiscard]] GuidePlan PlanGestures(const GuideProblem& problem, const LiveEstimate& estimate,
                                      const std::vector<Gesture>& gestures,
-                                     const PlanningOptions& options);
+                                     const GesturePlanOptions& options);
 
 }  // namespace calibrato
