@@ -50,7 +50,7 @@ TEST(GrowingRecording, IsARecordingAfterEverySample) {
   GrowingRecording recording(path, {32, 24}, 1);
   for (int k = 0; k < 3; ++k) {
     recording.AddImage(At(k), Image(k));
-    recording.AddImu(Sample(k), Sample(k + 10));
+    recording.AddImu(Sample(k), {At(k), Sample(k + 10).value});
     const Recording read = OpenRecording(path, {});
     const auto& images = std::get<CameraImages>(read.cameras.at(0).data);
     ASSERT_EQ(images.list.size(), static_cast<size_t>(k + 1));
@@ -58,6 +58,7 @@ TEST(GrowingRecording, IsARecordingAfterEverySample) {
     EXPECT_EQ(GreyOf(images.reader->Read(static_cast<size_t>(k))).pixels, Image(k).pixels);
     ASSERT_EQ(read.imus.at(0).stream.gyro.size(), static_cast<size_t>(k + 1));
     EXPECT_EQ(read.imus[0].stream.gyro.back().value, Sample(k).value);
+    EXPECT_EQ(read.imus[0].stream.accel.back().value, Sample(k + 10).value);
   }
 }
 
