@@ -166,15 +166,7 @@ std::string ComparisonText(const CameraImuComparison& comparison, double level) 
       text += "\n";
     }
   }
-  switch (AgreementOf(comparison, level)) {
-    case Agreement::kAgree:
-      return text + "the results agree\n";
-    case Agreement::kDiffer:
-      return text + "the results differ by more than chance\n";
-    case Agreement::kInconclusive:
-      return text + "inconclusive: a result has no covariance\n";
-  }
-  return text;
+  return text + AgreementText(AgreementOf(comparison, level)) + "\n";
 }
 
 }  // namespace calibrato

@@ -138,6 +138,18 @@ ResultComparison CompareResults(const Value& first, const Value& second) {
   return comparison;
 }
 
+std::string AgreementText(Agreement agreement) {
+  switch (agreement) {
+    case Agreement::kAgree:
+      return "the results agree";
+    case Agreement::kDiffer:
+      return "the results differ by more than chance";
+    case Agreement::kInconclusive:
+      return "inconclusive: a result has no covariance";
+  }
+  return "";
+}
+
 Agreement AgreementOf(const ResultComparison& comparison, double level) {
   const std::vector<const Significance*> tests = Tests(comparison);
   const double limit = level / static_cast<double>(tests.size());
@@ -211,15 +223,7 @@ std::string ComparisonText(const ResultComparison& comparison, double level) {
           Chance(pair.T_cn_cnm1->significance) + "\n";
     }
   }
-  switch (AgreementOf(comparison, level)) {
-    case Agreement::kAgree:
-      return text + "the results agree\n";
-    case Agreement::kDiffer:
-      return text + "the results differ by more than chance\n";
-    case Agreement::kInconclusive:
-      return text + "inconclusive: a result has no covariance\n";
-  }
-  return text;
+  return text + AgreementText(AgreementOf(comparison, level)) + "\n";
 }
 
 }  // namespace calibrato

@@ -27,6 +27,9 @@ enum class Agreement {
   kDiffer,       ///< Some difference is significant.
   kInconclusive  ///< None is known to be significant, but a covariance is missing.
 };
+
+/// For people, without a line's end: "the results agree".
+[[nodiscard]] std::string AgreementText(Agreement agreement);
 [[nodiscard]] std::string AgreementName(Agreement agreement);  ///< "agree", "differ", ..
 
 /// From two result.json.
