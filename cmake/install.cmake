@@ -7,7 +7,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/calibrato)
 set(room_targets calibrato_options)
 foreach(room IN LISTS CALIBRATO_ROOMS)
   if(room STREQUAL "cli")
-    install(TARGETS calibrato RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+    install(TARGETS calibrato calibrato-learner RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
     continue()
   endif()
   list(APPEND room_targets calibrato_${room})
@@ -38,6 +38,8 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR}
         RENAME copyright COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/examples/rig.yaml ${PROJECT_SOURCE_DIR}/examples/rig_real.yaml
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/examples/arms
+        DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT program)
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME calibrato)
@@ -63,7 +65,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libegl1, libgl1-mesa-dri")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libcalibrato-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-  "libeigen3-dev, libtbb-dev, libyaml-cpp-dev, nlohmann-json3-dev, libopencv-dev, zlib1g-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, pkg-config, libcairo2-dev, liborocos-kdl-dev, libmujoco-dev, libnlopt-dev")
+  "libeigen3-dev, libtbb-dev, libyaml-cpp-dev, nlohmann-json3-dev, libopencv-dev, zlib1g-dev, libbz2-dev, liblz4-dev, libzstd-dev, libsqlite3-dev, pkg-config, libcairo2-dev, liborocos-kdl-dev, liburdfdom-dev, libmujoco-dev, libnlopt-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "libtorch-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-calibrato)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)

@@ -15,6 +15,7 @@
 #include "calibrato/calibration/camera_calibration.h"
 #include "calibrato/calibration/camera_imu_calibration.h"
 #include "calibrato/calibration/chi_square.h"
+#include "calibrato/calibration/view_selection.h"
 #include "calibrato/detection/detect.h"
 #include "calibrato/recording/photo.h"
 #include "calibrato/sensors/effects.h"
@@ -83,7 +84,9 @@ void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* ju
   CameraProblem intrinsic;
   intrinsic.model = truth.model.name();
   intrinsic.resolution = truth.resolution;
-  intrinsic.views = Detected(run, rig);
+  const std::vector<BoardView> views = Detected(run, rig);
+  // The handcrafted motion rests between its loops.
+  for (const size_t v : SelectDistinct(views)) intrinsic.views.push_back(views[v]);
   const CameraCalibration camera = CalibrateCamera(intrinsic);
   if (camera.termination != Termination::kConverged) {
     ++judgement->num_not_converged;
@@ -94,7 +97,7 @@ void JudgeRig(int number, const std::function<void(Rig*)>& effect, Judgement* ju
                         camera.covariance.topLeftCorner<4, 4>());
 
   CameraImuProblem extrinsic;
-  extrinsic.cameras.push_back({truth.model, intrinsic.views, IntrinsicsKnowledge::kExact, {}});
+  extrinsic.cameras.push_back({truth.model, views, IntrinsicsKnowledge::kExact, {}});
   extrinsic.imus.push_back({run.imu.stream, rig.imu_noise, ImuModelKind::kCalibrated});
   CameraImuOptions options;
   options.knot_spacing_s = 0.07;

@@ -69,6 +69,14 @@ void SimulatedHand::Make(const Gesture& gesture) {
   aside << gesture.turn_aside, Eigen::Vector3d::Zero();
   piece.to_and_fro = clumsy(to_and_fro);
   piece.aside = clumsy(aside);
+  // A sine that lags is a sine and a cosine.
+  for (const int part : {0, 3}) {
+    const double lag = errors_.Normal(0.0, clumsiness_.out_of_step_rad);
+    const Eigen::Vector3d sine = piece.to_and_fro.segment<3>(part);
+    const Eigen::Vector3d cosine = piece.aside.segment<3>(part);
+    piece.to_and_fro.segment<3>(part) = std::cos(lag) * sine + std::sin(lag) * cosine;
+    piece.aside.segment<3>(part) = std::cos(lag) * cosine - std::sin(lag) * sine;
+  }
   piece.period_s = gesture.period_s * std::max(1.0, scaled());
   piece.duration_s = gesture.duration_s * piece.period_s / gesture.period_s;
   // A quintic's peak velocity is 15/8 of its mean.

@@ -15,6 +15,7 @@ namespace calibrato {
 struct Clumsiness {
   double amplitude_share = 0.15;  ///< Of amplitudes and periods, standard deviation [-].
   double crosstalk = 0.15;        ///< Into the other axes, of the amplitude [-].
+  double out_of_step_rad = 0.3;   ///< Of turns, and of shifts, against what was meant: a lag.
   double place_m = 0.015;         ///< Of where the gesture is made [m], each axis ...
   double angle_rad = 0.03;        ///< ... and of its orientation.
   double drift_m = 0.01;          ///< Slow wandering, below 0.2 Hz.

@@ -3,16 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "calibrato/calibration/coverage_range.h"
 
 namespace calibrato {
 namespace {
-
-constexpr double kWantedX = 0.7;
-constexpr double kWantedY = 0.7;
-constexpr double kWantedSize = 0.4;
-constexpr double kWantedSkew = 0.5;
 
 // The pixels nearest to the four corners of the view's bounding box on the board, in order around
 // it.
@@ -35,19 +31,6 @@ double Cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-class Range {
- public:
-  void Add(double value) {
-    low_ = std::min(low_, value);
-    high_ = std::max(high_, value);
-  }
-  double Progress(double wanted) const { return std::clamp((high_ - low_) / wanted, 0.0, 1.0); }
-
- private:
-  double low_ = std::numeric_limits<double>::infinity();
-  double high_ = -std::numeric_limits<double>::infinity();
-};
-
 }  // namespace
 
 ViewParameters ViewParametersOf(const BoardView& view, Resolution resolution) {
@@ -66,22 +49,9 @@ ViewParameters ViewParametersOf(const BoardView& view, Resolution resolution) {
 }
 
 Coverage CoverageOf(const std::vector<BoardView>& views, Resolution resolution) {
-  if (views.empty()) return {};
-  Range x;
-  Range y;
-  Range size;
-  Range skew;
-  size.Add(0.0);
-  skew.Add(0.0);
-  for (const BoardView& view : views) {
-    const ViewParameters parameters = ViewParametersOf(view, resolution);
-    x.Add(parameters.x);
-    y.Add(parameters.y);
-    size.Add(parameters.size);
-    skew.Add(parameters.skew);
-  }
-  return {x.Progress(kWantedX), y.Progress(kWantedY), size.Progress(kWantedSize),
-          skew.Progress(kWantedSkew)};
+  CoverageRange range;
+  for (const BoardView& view : views) range.Add(ViewParametersOf(view, resolution));
+  return range.coverage();
 }
 
 }  // namespace calibrato

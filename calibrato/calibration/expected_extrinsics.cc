@@ -429,14 +429,23 @@ MatrixXd ExtrinsicInformationOf(const PlannedRig& rig, const PlannedMotion& moti
                                 bool camera_is_known) {
   constexpr double kGyroBias = 0.1;   // [rad/s]
   constexpr double kAccelBias = 1.0;  // [m/s^2]
+  // A motion that leaves a direction of the border open has a singular border, which can't be
+  // factored: a little is added to it before, and taken away from the result, which it changes by
+  // no more than rounding.
+  constexpr double kLift = 1e-9;       // Of a diagonal element ...
+  constexpr double kLeastLift = 1e-6;  // ... and where that is nothing.
   const int n = camera_is_known ? 0 : rig.camera.num_parameters();
   const Layout layout(motion.duration_s, n);
   std::vector<Matrix6d> information;
-  const ArrowheadSystem system = Assemble(rig, motion, layout, &information);
+  ArrowheadSystem system = Assemble(rig, motion, layout, &information);
+  const int m = layout.border_size();
+  MatrixXd lift = MatrixXd::Zero(m + 1, m + 1);
+  lift.diagonal().head(m) = (kLift * system.BorderBlock().diagonal()).cwiseMax(kLeastLift);
+  system.AddToBorder(lift);
   const MatrixXd nothing = MatrixXd::Zero(kBiases + n, kBiases + n);
   const auto factor = ArrowheadCholesky::Factor(system, 0.0);
   if (!factor) return nothing;
-  const MatrixXd border = factor->BorderInformation();
+  const MatrixXd border = factor->BorderInformation() - lift.topLeftCorner(m, m);
   std::vector<int> kept;
   for (int k = 0; k < kBiases; ++k) kept.push_back(k);
   for (int k = 0; k < n; ++k) kept.push_back(layout.parameter_column() + k);

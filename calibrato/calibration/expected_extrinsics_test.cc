@@ -116,6 +116,44 @@ TEST(ExtrinsicInformationOf, AgreesWithTheSolversInformation) {
   }
 }
 
+// A hold leaves all but the camera open, and of the camera it says what its frames say: the IMU has
+// no part in it.
+TEST(ExtrinsicInformationOf, OfAHoldIsThatOfItsFrames) {
+  const SyntheticCameraImu truth = Truth();
+  const PlannedRig rig = RigOf(truth);
+  // At one of its poses that sees the board from aside.
+  const Rigid3 T_g_i = truth.PoseAt(1.3);
+  PlannedMotion motion = MotionOf(truth, 50.0);
+  for (PlannedImuInstant& instant : motion.imu) {
+    instant.R_g_i = T_g_i.R;
+    instant.omega_i.setZero();
+    instant.force_i = -T_g_i.R.transpose() * truth.gravity_g;
+  }
+  for (PlannedFrame& frame : motion.frames) {
+    frame.T_c_g = truth.T_c_i[0] * T_g_i.Inverse();
+    frame.omega_i.setZero();
+    frame.velocity_g.setZero();
+  }
+  const int n = truth.model.num_parameters();
+  Eigen::MatrixXd of_frames = Eigen::MatrixXd::Zero(n, n);
+  for (const PlannedFrame& frame : motion.frames) {
+    const auto information = CameraInformationOfFrame(rig.camera, rig.points, frame.T_c_g);
+    ASSERT_TRUE(information);
+    of_frames += frame.weight / (rig.corner_noise_px * rig.corner_noise_px) * *information;
+  }
+  Eigen::MatrixXd known = ExtrinsicInformationOf(rig, motion, false);
+  constexpr int kTimeOffset = 6;
+  EXPECT_NEAR(known(kTimeOffset, kTimeOffset), 0.0, 1e-3);
+  known.topLeftCorner<9, 9>() += Eigen::MatrixXd::Identity(9, 9);
+  const Eigen::MatrixXd of_camera =
+      known.bottomRightCorner(n, n) -
+      known.bottomLeftCorner(n, 9) *
+          known.topLeftCorner<9, 9>().ldlt().solve(known.topRightCorner(9, n));
+  ASSERT_GT(of_frames.diagonal().minCoeff(), 1e-3);
+  const Eigen::VectorXd scale = of_frames.diagonal().cwiseSqrt().cwiseInverse();
+  EXPECT_LT((scale.asDiagonal() * (of_camera - of_frames) * scale.asDiagonal()).norm(), 1e-3);
+}
+
 // Each derivative of the gradient against central differences, at a few instants.
 class ExpectExtrinsicsGradient : public testing::TestWithParam<DesignCriterion> {
  protected:

@@ -114,6 +114,18 @@ std::vector<size_t> SelectByCoverage(const std::vector<BoardView>& views, Resolu
   return kept;
 }
 
+std::vector<size_t> SelectDistinct(const std::vector<BoardView>& views, double least_way_px) {
+  std::vector<size_t> kept;
+  for (size_t v = 0; v < views.size(); ++v) {
+    const bool is_distinct = std::all_of(kept.begin(), kept.end(), [&](size_t other) {
+      const auto way = MeanWay(views[other], views[v]);
+      return !way || *way >= least_way_px;
+    });
+    if (is_distinct) kept.push_back(v);
+  }
+  return kept;
+}
+
 std::vector<Eigen::MatrixXd> InformationOfViews(const CameraCalibration& calibration,
                                                 const std::vector<bool>& fixed) {
   assert(calibration.model && calibration.noise_stddev_px > 0.0);

@@ -28,6 +28,17 @@ struct CoverageSelectionOptions {
                                                    Resolution resolution,
                                                    const CoverageSelectionOptions& options = {});
 
+/// Two views in which corners moved by less than this on the average hardly differ in where corners
+/// lie within their pixels, on which a detector's small errors depend [px].
+inline constexpr double kDistinctWayPx = 0.3;
+
+/// The views that differ from every view kept before them, by the mean way of the corners that both
+/// hold [px]. A camera that hovers, or returns to where it was, repeats its corners' errors
+/// together with its views, beside what noise its sensor adds: counted as so many measurements they
+/// would make covariances too small. Indices, ascending; views without common corners differ.
+[[nodiscard]] std::vector<size_t> SelectDistinct(const std::vector<BoardView>& views,
+                                                 double least_way_px = kDistinctWayPx);
+
 /// How fast the board moves in the image [px/s] at each view: the mean way of the corners that it
 /// shares with the view before it. Nothing for the first view, without time between them, or where
 /// no corner is shared.

@@ -65,6 +65,33 @@ TEST(SelectByCoverage, LeavesOutViewsInWhichTheBoardMovesFast) {
   EXPECT_EQ(SelectByCoverage(Video(first, 8, 19.4), kImage), std::vector<size_t>{0});
 }
 
+TEST(SelectDistinct, KeepsTheFirstOfViewsThatAreAlikeHoweverFarApart) {
+  const std::vector<BoardView> different = Views(8, 1);
+  std::vector<BoardView> views = different;
+  views.insert(views.end(), different.begin(), different.end());
+  std::vector<size_t> first(different.size());
+  std::iota(first.begin(), first.end(), 0);
+  EXPECT_EQ(SelectDistinct(views), first);
+}
+
+TEST(SelectDistinct, CountsTheWayFromTheLastViewThatWasKept) {
+  // A slow drift of 0.11 px a view is distinct at every third.
+  EXPECT_EQ(SelectDistinct(Video(Views(1, 2)[0], 8, 0.11)), (std::vector<size_t>{0, 3, 6}));
+}
+
+TEST(SelectDistinct, KeepsViewsOfDifferentParts) {
+  const BoardView whole = Views(1, 2)[0];
+  const auto part = [&](int first, int count) {
+    BoardView view = whole;
+    view.corner_ids.assign(whole.corner_ids.begin() + first,
+                           whole.corner_ids.begin() + first + count);
+    view.pixels = whole.pixels.middleCols(first, count);
+    view.points_g = whole.points_g.middleCols(first, count);
+    return view;
+  };
+  EXPECT_EQ(SelectDistinct({part(0, 10), part(10, 10), part(5, 10)}), (std::vector<size_t>{0, 1}));
+}
+
 TEST(BoardSpeeds, IsTheMeanWayOfSharedCornersOverTime) {
   std::vector<BoardView> video = Video(Views(1, 3)[0], 3, 5.0);
   // The last view holds only every second corner, which moved by 12 px more.

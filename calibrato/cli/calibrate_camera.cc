@@ -218,7 +218,8 @@ Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global) {
       ->delimiter(',');
   app.add_option(
          "--select", options->select,
-         "Which views: all, coverage (new ones, as in the paper) or information (until more "
+         "Which views: all, distinct (none that repeats another), coverage (new ones, as in the "
+         "paper) or information (until more "
          "would not help)")
       ->capture_default_str();
   app.add_flag("--estimate-bending", options->estimate_bending,

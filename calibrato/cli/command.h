@@ -14,7 +14,8 @@ struct GlobalOptions {
   int threads = 0;    ///< 0: one per core.
   bool json = false;  ///< The result on stdout, and nothing else.
   bool quiet = false;
-  bool force = false;  ///< Replace what is there.
+  bool force = false;      ///< Replace what is there.
+  char** words = nullptr;  ///< The whole command line as the process got it, ended by nullptr.
 };
 
 /// How a command ended; the process's exit code (docs/formats.md section 1).
@@ -33,7 +34,7 @@ using Action = std::function<ExitCode()>;
 using SetUp = Action (*)(CLI::App& app, const GlobalOptions& global);
 
 // To add a command: its set-up in a file of its own, its line here, its row in the table of
-// main.cc.
+// main.cc; if it needs room learning, a line in learner_program.cc.
 Action SetUpCalibrateCamera(CLI::App& app, const GlobalOptions& global);
 Action SetUpCalibrateCameraImu(CLI::App& app, const GlobalOptions& global);
 Action SetUpBoard(CLI::App& app, const GlobalOptions& global);

@@ -1,7 +1,6 @@
 // `calibrato evaluate planners`: all planners under equal budgets.
 
 #include <cstdio>
-#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "calibrato/base/cpu_time.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
@@ -29,12 +29,6 @@ struct Options {
   int repetitions = 3;
 };
 
-double ThreadSeconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
 struct TimedDesign {
   std::optional<MotionDesign> design;
   double cpu_s = 0.0;
@@ -53,11 +47,11 @@ std::vector<PlannerRun> RunPlanners(const MotionDesignProblem& problem, const Op
     return options.budgets[i / num_repetitions % num_budgets];
   };
   const auto designs = ParallelMap<TimedDesign>(n, [&](size_t i) {
-    const double start = ThreadSeconds();
+    const double start = ThreadCpuSeconds();
     TimedDesign made;
     made.design = PlanByMethod(method_of(i), problem, budget_of(i),
                                rng.Stream("repetition", i % num_repetitions));
-    made.cpu_s = ThreadSeconds() - start;
+    made.cpu_s = ThreadCpuSeconds() - start;
     progress.Advance();
     return made;
   });

@@ -78,6 +78,35 @@ TEST(ExportCommand, WritesWhatAnotherProgramReadsAndTheArmAccepts) {
   }
 }
 
+TEST(ExportCommand, DrawsADryRun) {
+  const ScratchFolder scratch;
+  const std::string motion = scratch.Write("motion.yaml", MotionYaml(0.05));
+  const std::string page = scratch.Path("dry-run.html");
+  const Ended ended = RunProgram({"export", motion, "--format", "joint-csv", "--html", page,
+                                  "--out", scratch.Path("joints.csv")});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  const std::string html = ContentOf(page);
+  // The document that the page draws: all seven joints at rest at both ends, the arm at each step.
+  const std::string opening = "<script type=\"application/json\" id=\"documents\">";
+  const size_t begin = html.find(opening);
+  ASSERT_NE(begin, std::string::npos);
+  const size_t end = html.find("</script>", begin);
+  const Value documents = ParseJson(
+      html.substr(begin + opening.size(), end - begin - opening.size()), "documents of the page");
+  const Value& drawn = documents.elements().at(0);
+  EXPECT_EQ(drawn.At("kind").AsString(), "dry-run");
+  EXPECT_EQ(drawn.At("joints").At("names").size(), 7U);
+  for (const Value& quantity : drawn.At("joints").At("quantities").elements()) {
+    EXPECT_LE(quantity.At("largest_share").AsDouble(), 1.001) << quantity.At("name").AsString();
+  }
+  const Value& played = drawn.At("motion").At("played");
+  EXPECT_EQ(played.At("arm_b").size(), played.At("camera_b").size());
+  const Ended folder = RunProgram({"export", scratch.MakeFolder("result"), "--format", "ros",
+                                   "--html", page, "--out", scratch.Path("ros")});
+  EXPECT_EQ(folder.exit_code, 2);
+  EXPECT_NE(folder.err.find("--html has no use here"), std::string::npos) << folder.err;
+}
+
 TEST(ExportCommand, RefusesAMotionThatTheArmCannotMakeAndUnknownFormats) {
   const ScratchFolder scratch;
   const std::string out = scratch.Path("out");

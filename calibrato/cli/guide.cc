@@ -24,6 +24,7 @@
 #include "calibrato/guide/guide_page.h"
 #include "calibrato/guide/guide_session.h"
 #include "calibrato/guide/imu_pipe.h"
+#include "calibrato/motion/motion.h"
 #include "calibrato/recording/growing_recording.h"
 #include "calibrato/recording/recording.h"
 #include "calibrato/sensors/camera_chain.h"
@@ -48,6 +49,7 @@ struct Options {
   std::string imu_pipe;
   bool no_imu = false;
   std::vector<std::string> wanted;
+  std::string policy;
   double reach_m = HandLimits().reach_m;
   double speed = 1.0;
   double max_duration_s = GuideOptions().max_duration_s;
@@ -144,6 +146,16 @@ std::pair<std::string, ExitCode> CalibrateRecording(const Options& options, bool
   return {imu_out, RunCommand(SetUpCalibrateCameraImu, words)};
 }
 
+// A policy's file of weights is for those who plan anew; what it settled on stands beside it.
+Motion MotionOfPolicy(const std::string& folder, std::vector<std::string>* warnings) {
+  const std::string path = folder + "/motion.yaml";
+  if (!fs::exists(path)) {
+    throw InputError({"no policy", folder, "it has no motion.yaml",
+                      "give a folder policy/ as `calibrato learn` writes it"});
+  }
+  return MotionFromValue(ReadYaml(path), warnings);
+}
+
 ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
   CheckOptions(options);
   std::vector<std::string> warnings;
@@ -153,6 +165,8 @@ ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
   problem.model = options.model;
   static_cast<void>(CameraModel::NumParameters(options.model));  // Refuses what is none.
   for (const std::string& word : options.wanted) SetWanted(word, &problem.wanted);
+  std::optional<Motion> motion;
+  if (!options.policy.empty()) motion = MotionOfPolicy(options.policy, &warnings);
   std::optional<Resolution> known_resolution;
   if (!options.cameras.empty()) {
     const std::vector<Camera> chain = CameraChainFromValue(ReadYaml(options.cameras), &warnings);
@@ -203,6 +217,7 @@ ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
   GuideOptions guide;
   guide.hand.reach_m = options.reach_m;
   guide.max_duration_s = options.max_duration_s;
+  guide.motion = std::move(motion);
   GuideSession session(board, problem, guide);
   LatestFrame latest;
   Phase phase;
@@ -301,6 +316,9 @@ Action SetUpGuide(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--want", options->wanted,
                  "How well to know it before it ends, as a standard deviation; any of "
                  "focal-percent=0.2 rotation-deg=0.05 translation-mm=2 time-ms=0.1");
+  app.add_option("--policy", options->policy,
+                 "A folder policy/ of `calibrato learn`: its motion is asked for, loop by loop, "
+                 "instead of what is expected to tell most");
   app.add_option("--reach", options->reach_m, "How far the hand goes from where it begins [m]")
       ->check(NumberBetween(0.05, 2.0))
       ->capture_default_str();

@@ -100,6 +100,17 @@ class GuideCommand : public testing::Test {
     return arguments;
   }
 
+  // What the page of a running command is told once there is a hint.
+  static std::string StateWithHint(const std::string& err, int* port) {
+    std::string state;
+    for (int k = 0; k < 600 && state.find("\"hint\"") == std::string::npos; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      if (*port == 0) *port = PortIn(ContentOf(err));
+      if (*port != 0) state = Ask(*port, "/state");
+    }
+    return state;
+  }
+
   ScratchFolder scratch_;
   std::string recorded_ = scratch_.Path("recorded");
   std::string out_ = scratch_.Path("out");
@@ -132,12 +143,7 @@ TEST_F(GuideCommand, ShowsItsStateWhileItRuns) {
   RunningProgram program(Guide({"--port", "0", "--speed", "0.1", "--want", "time-ms=1e-6"}),
                          std::nullopt, WithStderrIn(err));
   int port = 0;
-  std::string state;
-  for (int k = 0; k < 600 && state.find("\"hint\"") == std::string::npos; ++k) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    if (port == 0) port = PortIn(ContentOf(err));
-    if (port != 0) state = Ask(port, "/state");
-  }
+  const std::string state = StateWithHint(err, &port);
   EXPECT_THAT(state, AllOf(HasSubstr("\"phase\": \"capturing\""), HasSubstr("\"words\": "),
                            HasSubstr("\"ghost\": [["), HasSubstr("\"rot_x\"")));
   EXPECT_THAT(Ask(port, "/"), HasSubstr("<title>calibrato guide</title>"));
@@ -146,6 +152,20 @@ TEST_F(GuideCommand, ShowsItsStateWhileItRuns) {
   const Ended ended = program.Wait();
   EXPECT_EQ(ended.signal, 0);
   EXPECT_THAT(ended.out, HasSubstr("interrupted after"));
+}
+
+TEST_F(GuideCommand, AsksForTheMotionOfAPolicy) {
+  const std::string policy = scratch_.Path("policy");
+  fs::create_directory(policy);
+  fs::copy_file(scratch_.Path("motion.yaml"), policy + "/motion.yaml");
+  const std::string err = scratch_.Path("stderr");
+  RunningProgram program(
+      Guide({"--policy", policy, "--port", "0", "--speed", "0.1", "--want", "time-ms=1e-6"}),
+      std::nullopt, WithStderrIn(err));
+  int port = 0;
+  EXPECT_THAT(StateWithHint(err, &port), HasSubstr("\"name\": \"loop 1\""));
+  program.Signal(SIGINT);
+  EXPECT_EQ(program.Wait().signal, 0);
 }
 
 TEST_F(GuideCommand, KilledInTheMiddleKeepsWhatWasThere) {
@@ -181,7 +201,8 @@ TEST_F(GuideCommand, RefusesWhatDoesNotGoTogether) {
                   scratch_.Path("camchain.yaml")},
         Guide({"--no-imu"}), Guide({"--want", "time-ms=nan"}), Guide({"--speed", "nan"}),
         Guide({"--speed", "0.001"}), Guide({"--model", "pinhole-radtam"}),
-        Guide({"--host", "192.0.2.1"}), Guide({"--imu-pipe", "/dev/null"})}) {
+        Guide({"--host", "192.0.2.1"}), Guide({"--imu-pipe", "/dev/null"}),
+        Guide({"--policy", "/nowhere"})}) {
     const Ended ended = RunProgram(arguments);
     EXPECT_EQ(ended.exit_code, 2) << ended.err;
     EXPECT_THAT(ended.err, HasSubstr("error: "));

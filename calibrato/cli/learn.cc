@@ -11,11 +11,11 @@
 #include "calibrato/cli/learn_best.h"
 #include "calibrato/cli/learn_document.h"
 #include "calibrato/cli/learn_environment.h"
-#include "calibrato/cli/live_page.h"
 #include "calibrato/cli/number_range.h"
 #include "calibrato/cli/output.h"
 #include "calibrato/learning/mpi_team.h"
 #include "calibrato/learning/trainer.h"
+#include "calibrato/page/live_page.h"
 #include "calibrato/report/report.h"
 #include "calibrato/simulation/rig_distribution.h"
 
@@ -228,7 +228,7 @@ ExitCode RunLearn(const Options& options, const GlobalOptions& global) {
   }
   std::optional<LivePage> live;
   if (options.live_port >= 0 && team->is_first()) {
-    live.emplace(options.live_port, LiveContent(options));
+    live.emplace(options.live_port, "--live", LiveContent(options));
     if (!global.quiet) std::fprintf(stderr, "live: %s\n", live->address().c_str());
   }
 

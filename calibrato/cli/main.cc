@@ -137,6 +137,7 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", std::string("calibrato " CALIBRATO_VERSION));
   app.require_subcommand(1);
   GlobalOptions global;
+  global.words = argv;
   std::vector<std::pair<CLI::App*, Action>> actions;
   std::map<std::string, CLI::App*> groups;
   for (const Command& command : kCommands) {

@@ -10,14 +10,17 @@
 
 #include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/cli/arm_argument.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/design_arguments.h"
+#include "calibrato/cli/look_arguments.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/evaluation/closed_loop.h"
 #include "calibrato/learning/plan_by_method.h"
 #include "calibrato/mdp/design_setting.h"
 #include "calibrato/mdp/motion_design.h"
 #include "calibrato/mdp/motion_information.h"
+#include "calibrato/motion/arm_plan.h"
 #include "calibrato/simulation/rig_distribution.h"
 
 namespace calibrato {
@@ -29,7 +32,9 @@ struct Options {
   std::string method;
   std::string task;     // Empty: the policy's, or intrinsic.
   std::string carrier;  // Empty: that of the policy's motion, or free.
+  std::string arm;
   std::string rigs;
+  LookArguments look;
   DesignArguments design;
   int evaluations = 0;  // 0: kEvaluations.
   int executed = 0;
@@ -99,6 +104,17 @@ PlannedBefore ReadPolicyMotion(const std::string& folder) {
                     "give the folder that calibrato learn wrote, once it has finished"});
 }
 
+// The design keeps to a sphere and above a height; of an arm whose reach is not known in closed
+// form both are widened until its start is well within, and the plan on the arm has the last word.
+void StartFrom(const Arm& arm, const Rig& rig, MotionDesignProblem* problem) {
+  constexpr double kRoom = 0.2;  // [m]
+  problem->base_pose = BasePoseBeforeBoard(rig, StartPose(arm));
+  const Eigen::Vector3d& start = problem->base_pose.xyz_m;
+  FreeCarrierLimits& limits = problem->limits;
+  limits.reach = std::max(limits.reach, (start - FreeCarrierShoulder()).norm() + kRoom);
+  limits.min_height = std::min(limits.min_height, start.z() - kRoom);
+}
+
 // What was asked for that has no use beside --policy; empty if nothing.
 std::string OptionOfMethods(const Options& options) {
   const DesignArguments standard;
@@ -116,11 +132,18 @@ void CheckUse(const Options& options) {
     throw InputError(
         {"plan by what?", "", "give either --method or --policy", "for example --method fisher"});
   }
+  CheckLookArguments(options.look);
   const bool by_policy = !options.policy.empty();
   const std::string unused = by_policy ? OptionOfMethods(options) : "";
   if (!unused.empty()) {
     throw InputError({unused + " has no use here", "", "the policy's motion is what it is",
                       "leave it out, or plan by --method"});
+  }
+  if (!options.arm.empty() && (by_policy || !options.carrier.empty())) {
+    throw InputError({"--arm has no use here", "",
+                      by_policy ? "a policy's motion begins where its own carrier stood"
+                                : "the arm is the carrier",
+                      by_policy ? "plan by --method" : "leave --carrier out"});
   }
   if (!by_policy && options.executed > 0) {
     throw InputError({"--executed has no use here", "",
@@ -145,13 +168,14 @@ void CheckExecuted(const Options& options, Motion motion, Carrier carrier, const
   }
 }
 
-// As the carrier makes it.
-Motion Executed(Motion motion, Carrier carrier, const Rig& rig) {
+// As the carrier, or the arm that somebody described, makes it.
+Motion Executed(Motion motion, Carrier carrier, const std::optional<Arm>& arm, const Rig& rig) {
   motion.carrier = carrier;
-  auto planned = PlanMotion(motion, rig);
-  TimedMotion timed = std::holds_alternative<TimedMotion>(planned)
-                          ? std::get<TimedMotion>(std::move(planned))
-                          : PlanScaledToFit(motion, rig);
+  TimedMotion timed = arm ? PlanScaledToFit(*arm, motion, rig) : PlanScaledToFit(motion, rig);
+  if (arm && timed.scale < 1.0) {
+    std::fprintf(stderr, "note: made smaller to fit the arm %s: %.3f of what was designed\n",
+                 arm->name.c_str(), timed.scale);
+  }
   for (size_t i = 0; i < timed.motion.loops.size(); ++i) {
     timed.motion.loops[i].duration_s = timed.loop_duration_s[i];
   }
@@ -237,19 +261,31 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   if (std::filesystem::exists(options.out) && !global.force) {
     throw InputError({"cannot write the motion", options.out, "it exists", "add --force"});
   }
+  if (std::filesystem::exists(options.look.rig_out) && !global.force) {
+    throw InputError({"cannot write the rig", options.look.rig_out, "it exists", "add --force"});
+  }
   std::optional<PlannedBefore> before;
   if (!options.policy.empty()) before = ReadPolicyMotion(options.policy);
   const std::string task_name = TaskNameOf(options, before);
   const Task task = TaskFromName(task_name);
   const Carrier carrier = CarrierOf(options, before);
+  const std::optional<Arm> arm = ReadArmArgument(options.arm);
   const Rng rng(global.seed);
-  std::vector<Rig> rigs = {AsEstimated(ReadRig(options.rig))};
+  Rig nominal = ReadRig(options.rig);
+  std::optional<OneLook> look;
+  if (!options.look.photo.empty()) {
+    SeenRig seen = LookByPhoto(options.look, std::move(nominal), arm ? &*arm : nullptr);
+    nominal = std::move(seen.rig);
+    look = seen.look;
+  }
+  std::vector<Rig> rigs = {AsEstimated(nominal)};
   if (!options.rigs.empty()) {
     rigs = BelievedRigs(RigDistributionFromName(options.rigs), options.design.num_believed, rng,
                         rigs.front());
   }
   const Rig rig = rigs.front();
   MotionDesignProblem problem = MakeDesignProblem(task, carrier, std::move(rigs), options.design);
+  if (arm) StartFrom(*arm, rig, &problem);
   const int num_evaluations_wanted = options.evaluations > 0 ? options.evaluations : kEvaluations;
 
   Motion motion;
@@ -257,10 +293,10 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   if (before) {
     before->motion.base_pose = BasePoseBeforeBoard(rig, before->motion.base_pose);
     if (options.executed > 0) CheckExecuted(options, before->motion, carrier, rig);
-    motion = Executed(before->motion, carrier, rig);
+    motion = Executed(before->motion, carrier, arm, rig);
     if (options.executed > 0) {
       num_evaluations = PlanRest(options, problem, &motion);
-      motion = Executed(std::move(motion), carrier, rig);
+      motion = Executed(std::move(motion), carrier, arm, rig);
     }
   } else {
     std::optional<MotionDesign> design =
@@ -271,7 +307,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
                         "allow a longer path or more time, or move the board"});
     }
     num_evaluations = design->num_information_evaluations;
-    motion = Executed(std::move(design->motion), carrier, rig);
+    motion = Executed(std::move(design->motion), carrier, arm, rig);
     motion.provenance = Value::Object()
                             .Set("method", options.method)
                             .Set("task", task_name)
@@ -279,21 +315,27 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
                                                                : "rigs " + options.rigs)
                             .Set("seed", std::to_string(global.seed))
                             .Set("information_evaluations", num_evaluations);
+    if (arm) motion.provenance.Set("arm", arm->name);
   }
   const Value expected = Expectation(task, rig, motion);
   WriteFileAtomically(options.out, ToYaml(ToValue(motion)));
+  if (!options.look.rig_out.empty()) {
+    WriteFileAtomically(options.look.rig_out, ToYaml(ToValue(nominal)));
+  }
   if (global.json) {
-    const Value result = Value::Object()
-                             .Set("kind", "plan")
-                             .Set("task", task_name)
-                             .Set("method", before ? "policy" : options.method)
-                             .Set("carrier", CarrierName(carrier))
-                             .Set("path_length_m", PathLength(motion))
-                             .Set("motion_s", Duration(motion))
-                             .Set("information_evaluations", num_evaluations)
-                             .Set("expected", expected);
+    Value result = Value::Object()
+                       .Set("kind", "plan")
+                       .Set("task", task_name)
+                       .Set("method", before ? "policy" : options.method)
+                       .Set("carrier", arm ? arm->name : CarrierName(carrier))
+                       .Set("path_length_m", PathLength(motion))
+                       .Set("motion_s", Duration(motion))
+                       .Set("information_evaluations", num_evaluations)
+                       .Set("expected", expected);
+    if (look) result.Set("board", ToValue(*look, nominal));
     std::fputs(ToJson(result).c_str(), stdout);
   } else if (!global.quiet) {
+    if (look) std::printf("%s\n", Describe(*look, nominal).c_str());
     std::printf("expected standard deviations of the calibration\n");
     const Motion half = Shrunk(problem, motion, 0.5);
     const Motion twice = Twice(motion);
@@ -312,6 +354,7 @@ Action SetUpPlan(CLI::App& app, const GlobalOptions& global) {
   std::string methods;
   for (const std::string& name : PlanMethodNames()) methods += (methods.empty() ? "" : ", ") + name;
   app.add_option("--rig", options->rig, "RIG.yaml: what is believed of the rig")->required();
+  AddLookArguments(app, &options->look);
   app.add_option("--policy", options->policy, "Folder of a learned policy: its motion");
   app.add_option("--method", options->method, methods);
   app.add_option("--executed", options->executed,
@@ -321,6 +364,7 @@ Action SetUpPlan(CLI::App& app, const GlobalOptions& global) {
   app.add_option("--task", options->task,
                  "intrinsic, extrinsic or joint (the policy's; with --method intrinsic)");
   app.add_option("--carrier", options->carrier, "free or arm (the policy's; with --method free)");
+  AddArmArgument(app, &options->arm);
   app.add_option("--rigs", options->rigs,
                  "A distribution of which rigs are drawn that the motion must suit as well");
   AddDesignArguments(app, &options->design);

@@ -1,6 +1,8 @@
 #include "calibrato/diagnosis/frame_selection.h"
 
+#include <cmath>
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -40,6 +42,23 @@ std::vector<size_t> InformativeViews(const CameraProblem& camera, const std::str
   return kept;
 }
 
+// What repeated views do to the covariance, where they are many.
+std::optional<Finding> OnRepeatedViews(const CameraProblem& camera, const std::string& name) {
+  constexpr double kWorthAWord = 0.05;
+  constexpr double kWorthAWarning = 1.0 / 3.0;
+  const auto all = static_cast<double>(camera.views.size());
+  const auto distinct = static_cast<double>(SelectDistinct(camera.views).size());
+  const double repeated = (all - distinct) / all;
+  if (!(repeated > kWorthAWord)) return std::nullopt;
+  char text[200];
+  std::snprintf(text, sizeof(text),
+                "%s: %.0f of %.0f views repeat another, and their corners' errors with it: sigmas "
+                "may be up to %.0f %% too small",
+                name.c_str(), all - distinct, all, 100.0 * (1.0 - std::sqrt(distinct / all)));
+  return Finding{repeated > kWorthAWarning ? Severity::kWarn : Severity::kInfo, text,
+                 "leave them out with --select distinct"};
+}
+
 void Keep(const std::set<int>& frames, CameraRigProblem* problem) {
   for (size_t c = 0; c < problem->cameras.size(); ++c) {
     std::vector<BoardView> views;
@@ -59,21 +78,30 @@ void Keep(const std::set<int>& frames, CameraRigProblem* problem) {
 
 FrameSelection FrameSelectionFromName(const std::string& name) {
   if (name == "all") return FrameSelection::kAll;
+  if (name == "distinct") return FrameSelection::kDistinct;
   if (name == "coverage") return FrameSelection::kCoverage;
   if (name == "information") return FrameSelection::kInformation;
   throw InputError(
-      {"unknown selection '" + name + "'", "", "", "use all, coverage or information"});
+      {"unknown selection '" + name + "'", "", "", "use all, distinct, coverage or information"});
 }
 
 std::vector<Finding> SelectFrames(FrameSelection selection, CameraRigProblem* problem) {
-  if (selection == FrameSelection::kAll) return {};
   std::vector<Finding> findings;
+  if (selection == FrameSelection::kAll) {
+    for (size_t c = 0; c < problem->cameras.size(); ++c) {
+      if (auto finding = OnRepeatedViews(problem->cameras[c], "cam" + std::to_string(c))) {
+        findings.push_back(*std::move(finding));
+      }
+    }
+    return findings;
+  }
   std::set<int> all;
   std::set<int> kept;
   for (size_t c = 0; c < problem->cameras.size(); ++c) {
     const CameraProblem& camera = problem->cameras[c];
     const std::vector<size_t> chosen =
-        selection == FrameSelection::kCoverage
+        selection == FrameSelection::kDistinct ? SelectDistinct(camera.views)
+        : selection == FrameSelection::kCoverage
             ? SelectByCoverage(camera.views, camera.resolution)
             : InformativeViews(camera, "cam" + std::to_string(c), &findings);
     for (const size_t v : chosen) kept.insert(problem->frame_of_view[c][v]);

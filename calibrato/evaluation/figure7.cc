@@ -134,10 +134,12 @@ ChartSeries NormsOverTime(const std::string& name, const std::vector<double>& ti
   ChartSeries series{name, {}, {}, {}, {}};
   const size_t stride = std::max<size_t>(1, residuals.size() / kMostPoints);
   for (size_t i = 0; i < residuals.size(); i += stride) {
-    double largest = 0.0;
+    double largest = -1.0;
     for (size_t k = i; k < std::min(i + stride, residuals.size()); ++k) {
       if (residuals[k].allFinite()) largest = std::max(largest, residuals[k].norm());
     }
+    // A stretch in which the estimator used no sample has no largest one.
+    if (largest < 0.0) continue;
     series.x.push_back(time_s[i]);
     series.y.push_back(largest);
   }

@@ -1,10 +1,10 @@
 #include "calibrato/evaluation/four_rows.h"
 
 #include <algorithm>
-#include <ctime>
 #include <functional>
 #include <utility>
 
+#include "calibrato/base/cpu_time.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/base/parallel.h"
 #include "calibrato/base/progress.h"
@@ -19,17 +19,6 @@ namespace {
 constexpr const char* kHandcrafted = "handcrafted";
 constexpr const char* kRobust = "robust";
 constexpr const char* kOracle = "oracle";
-
-double SecondsOf(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// Of this thread [s]: loops inside a body of a parallel loop stay on its thread.
-double ThreadSeconds() { return SecondsOf(CLOCK_THREAD_CPUTIME_ID); }
-// Of all threads [s], for what is not beside anything else.
-double ProcessSeconds() { return SecondsOf(CLOCK_PROCESS_CPUTIME_ID); }
 
 MotionDesignProblem ProblemOf(const ContestSetting& setting, const Rig& scene,
                               const FourRowsOptions& options) {
@@ -66,7 +55,7 @@ MadeForRigs MakeForRigs(const std::string& policy, const std::vector<Rig>& rigs,
   };
   Progress progress(policy, static_cast<int64_t>(rigs.size()));
   const auto made = ParallelMap<Made>(rigs.size(), [&](size_t i) {
-    const double start = ThreadSeconds();
+    const double start = ThreadCpuSeconds();
     Made each;
     try {
       each.of_rig = make(i);
@@ -74,7 +63,7 @@ MadeForRigs MakeForRigs(const std::string& policy, const std::vector<Rig>& rigs,
       // Before this board no carrier can stand: the trial will say so.
       each.of_rig.motion = otherwise;
     }
-    each.cpu_s = ThreadSeconds() - start;
+    each.cpu_s = ThreadCpuSeconds() - start;
     progress.Advance();
     return each;
   });
@@ -109,7 +98,7 @@ class Evaluation {
   void AddDesigns() {
     Add({FixedContestant(kHandcrafted, HandcraftedMotion(setting_.task), setting_.carrier, scene_)},
         {});
-    const double start = ProcessSeconds();
+    const double start = ProcessCpuSeconds();
     MotionDesignProblem one = problem_;
     one.rigs.resize(1);
     const std::optional<MotionDesign> nominal = DesignFromManyStarts(
@@ -130,7 +119,7 @@ class Evaluation {
     }
     row.num_design_evaluations = robust_.num_information_evaluations;
     Add({FixedContestant(kRobust, robust_.motion, setting_.carrier, scene_)}, row);
-    result_.seconds["nominal and robust"] += ProcessSeconds() - start;
+    result_.seconds["nominal and robust"] += ProcessCpuSeconds() - start;
     AddClosedLoop("closed loop", {robust_.motion}, row);
     AddOracle(row);
   }

@@ -29,15 +29,17 @@ std::vector<double> LoopEnds(const ExecutableMotion& motion) {
 }
 
 // Foot, elbows, wrist, flange: the origins of the links' frames, where they are not the same point.
-Value ArmPoints(const JointVector& q) {
+Eigen::Matrix3Xd PandaPoints(const JointVector& q) {
   const PandaAxes axes = AxesOf(q);
   Eigen::Matrix3Xd points(3, 7);
   points << Eigen::Vector3d::Zero(), axes.T_b_link[1].t, axes.T_b_link[2].t, axes.T_b_link[3].t,
       axes.T_b_link[4].t, axes.T_b_link[6].t, axes.T_b_e.t;
-  return Rounded(points.reshaped());
+  return points;
 }
 
-Value Played(const CarrierPath& path, const Rigid3& T_e_c0) {
+using ArmPoints = std::function<Eigen::Matrix3Xd(const JointVector& q)>;
+
+Value Played(const CarrierPath& path, const Rigid3& T_e_c0, const ArmPoints& arm_points) {
   constexpr double kStep = 0.1;  // [s]
   constexpr int kMostSteps = 240;
   const int num_steps =
@@ -50,7 +52,7 @@ Value Played(const CarrierPath& path, const Rigid3& T_e_c0) {
     Eigen::Matrix<double, 7, 1> pose;
     pose << T_b_c0.t, Eigen::Quaterniond(T_b_c0.R).coeffs();
     camera.Append(Rounded(pose));
-    if (path.joints) arm.Append(ArmPoints(path.joints(k * step_s)));
+    if (path.joints) arm.Append(Rounded(arm_points(path.joints(k * step_s)).reshaped()));
   }
   Value played = Value::Object();
   played.Set("step_s", step_s).Set("camera_b", std::move(camera)).Set("arm_b", std::move(arm));
@@ -59,7 +61,7 @@ Value Played(const CarrierPath& path, const Rigid3& T_e_c0) {
 
 }  // namespace
 
-Value MotionDrawing(const ExecutableMotion& motion, const Rig& rig) {
+Value MotionDrawing(const ExecutableMotion& motion, const Rig& rig, const ArmPoints& arm_points) {
   constexpr int kPointsALoop = 60;
   constexpr int kAxesEvery = 6;
   const std::vector<double> ends = LoopEnds(motion);
@@ -83,7 +85,7 @@ Value MotionDrawing(const ExecutableMotion& motion, const Rig& rig) {
       .Set("motion_s", motion.path.duration_s)
       .Set("loops", std::move(loops))
       .Set("axis_b", std::move(axes))
-      .Set("played", Played(motion.path, rig.T_e_c0));
+      .Set("played", Played(motion.path, rig.T_e_c0, arm_points ? arm_points : PandaPoints));
   return drawing;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
+
 #include "calibrato/base/value.h"
 #include "calibrato/evaluation/contestant.h"
 #include "calibrato/sensors/rig.h"
@@ -15,7 +18,12 @@ namespace calibrato {
 ///     played      {step_s; camera_b: [x y z qx qy qz qw] a step, of cam0;
 ///                  arm_b: the points of the arm's links from foot to flange, a row [x y z x y z
 ///                  ..] a step; empty without an arm}
-[[nodiscard]] Value MotionDrawing(const ExecutableMotion& motion, const Rig& rig);
+///
+/// @param arm_points  Of an arm that is not the Panda: the points of its links, base first, a
+/// column each, by its joint angles.
+[[nodiscard]] Value MotionDrawing(
+    const ExecutableMotion& motion, const Rig& rig,
+    const std::function<Eigen::Matrix3Xd(const Eigen::Matrix<double, 7, 1>& q)>& arm_points = {});
 
 /// The corners of the board's outer points in the base frame b: four times [x y z] [m].
 [[nodiscard]] Value BoardOutline(const Rig& rig);

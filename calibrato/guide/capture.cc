@@ -77,6 +77,7 @@ void Capture(FrameSource& source, GuideSession* session, GrowingRecording* recor
         return;
       }
       const Clock::time_point arrived = Clock::now();
+      if (frame->num_dropped > 0) session->AddDroppedFrames(frame->num_dropped);
       if (frame->image) latest->Set(*frame->image);
       const bool is_taken = frame->image ? session->AddFrame(frame->stamp, *frame->image)
                                          : session->AddView(frame->stamp, frame->view);

@@ -26,10 +26,13 @@ class CameraSource : public FrameSource {
 
   std::optional<CapturedFrame> Next(const ImuSink& /*sink*/,
                                     const std::function<bool()>& /*stop*/) override {
+    ++num_asked_;
     std::optional<LiveCamera::Frame> frame = first_ ? std::exchange(first_, {}) : camera_.Next();
     if (!frame) return std::nullopt;
     CapturedFrame captured;
     captured.stamp = frame->stamp;
+    // Between the first one, which told the size, and the next, nobody was ready for frames.
+    if (num_asked_ > 2) captured.num_dropped = frame->num_dropped;
     captured.image = std::move(frame->image);
     return captured;
   }
@@ -39,6 +42,7 @@ class CameraSource : public FrameSource {
  private:
   LiveCamera camera_;
   std::optional<LiveCamera::Frame> first_;
+  int num_asked_ = 0;
   Resolution resolution_;
 };
 

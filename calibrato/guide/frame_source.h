@@ -18,6 +18,7 @@ struct CapturedFrame {
   std::optional<GreyImage> image;  ///< None where the recording is a list of corners ...
   std::optional<BoardView> view;   ///< ... which then has these.
   std::string file;                ///< The image as its file, where there is one; else empty.
+  int num_dropped = 0;             ///< Frames before it that came too fast to be taken.
 };
 
 /// Where frames and, of recordings, IMU samples come from.

@@ -11,6 +11,7 @@
 
 #include "calibrato/calibration/planned_frame.h"
 #include "calibrato/geometry/so3.h"
+#include "calibrato/motion/time_law.h"
 
 namespace calibrato {
 namespace {
@@ -32,22 +33,8 @@ double Quintic(double s) {
 }
 
 bool IsHeld(const Gesture& gesture) {
-  return gesture.turn.isZero() && gesture.turn_aside.isZero() && gesture.shift.isZero();
-}
-
-bool KeepsBoardInView(const GestureSetting& setting, const Gesture& gesture) {
-  constexpr double kInstantsPerPeriod = 16.0;
-  const int num_instants =
-      IsHeld(gesture)
-          ? 1
-          : static_cast<int>(std::ceil(kInstantsPerPeriod * gesture.duration_s / gesture.period_s));
-  for (int k = 0; k <= num_instants; ++k) {
-    const Rigid3 T_c_g = PoseAt(gesture, gesture.duration_s * k / num_instants).Inverse();
-    if (!(MarginInImage(setting.camera, setting.resolution, setting.points, T_c_g) >= kMargin)) {
-      return false;
-    }
-  }
-  return true;
+  return !gesture.loop && gesture.turn.isZero() && gesture.turn_aside.isZero() &&
+         gesture.shift.isZero();
 }
 
 // As fast as the hand is.
@@ -99,8 +86,26 @@ std::optional<Gesture> HeldTowards(const GestureSetting& setting, std::string na
 
 }  // namespace
 
+bool KeepsBoardInView(const GestureSetting& setting, const Gesture& gesture) {
+  constexpr double kInstantsPerPeriod = 16.0;
+  const int num_instants =
+      IsHeld(gesture)
+          ? 1
+          : static_cast<int>(std::ceil(kInstantsPerPeriod * gesture.duration_s / gesture.period_s));
+  for (int k = 0; k <= num_instants; ++k) {
+    const Rigid3 T_c_g = PoseAt(gesture, gesture.duration_s * k / num_instants).Inverse();
+    if (!(MarginInImage(setting.camera, setting.resolution, setting.points, T_c_g) >= kMargin)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 Rigid3 PoseAt(const Gesture& gesture, double t_s) {
   const double t = std::clamp(t_s, 0.0, gesture.duration_s);
+  if (gesture.loop) {
+    return gesture.T_g_c * PoseAt(*gesture.loop, QuinticPhaseAt(t, gesture.duration_s).theta);
+  }
   const double ramp = 0.5 * std::min(gesture.period_s, gesture.duration_s);
   const double window = Quintic(t / ramp) * Quintic((gesture.duration_s - t) / ramp);
   const double phase = kTwoPi * t / gesture.period_s;
@@ -116,13 +121,22 @@ std::string Describe(const Gesture& gesture) {
     std::snprintf(text, sizeof text, "hold still for %.1f s", gesture.duration_s);
     return text;
   }
-  if (!gesture.shift.isZero()) {
-    std::snprintf(text, sizeof text, "%.0f cm to either side, %.1f s to and fro, for %.0f s",
-                  100.0 * gesture.shift.norm(), gesture.period_s, gesture.duration_s);
+  if (gesture.loop) {
+    std::snprintf(text, sizeof text, "once around, in %.0f s", gesture.duration_s);
     return text;
   }
-  std::snprintf(text, sizeof text, "%.0f degrees to either side, %.1f s to and fro, for %.0f s",
-                kDegrees * gesture.turn.norm(), gesture.period_s, gesture.duration_s);
+  char width[80];
+  const double way_cm = 100.0 * gesture.shift.norm();
+  const double angle = kDegrees * std::max(gesture.turn.norm(), gesture.turn_aside.norm());
+  if (angle == 0.0) {
+    std::snprintf(width, sizeof width, "%.0f cm", way_cm);
+  } else if (way_cm == 0.0) {
+    std::snprintf(width, sizeof width, "%.0f degrees", angle);
+  } else {
+    std::snprintf(width, sizeof width, "%.0f cm and %.0f degrees", way_cm, angle);
+  }
+  std::snprintf(text, sizeof text, "%s to either side, %.1f s to and fro, for %.0f s", width,
+                gesture.period_s, gesture.duration_s);
   return text;
 }
 
@@ -184,6 +198,36 @@ std::vector<Gesture> GesturesFor(const GestureSetting& setting) {
   screw.T_g_c = setting.T_g_c;
   screw.turn = kWidestTurn * Vector3d(1.0, 1.0, 1.0).normalized();
   add(Fitted(setting, screw));
+
+  // All at once: the way to the board tells the focal length from the distance, since the IMU knows
+  // its length; turns about two axes tell the rest. In one gesture they cost the time of one.
+  struct Push {
+    const char* name;
+    const char* words;
+    Vector3d turn;
+    Vector3d turn_aside;
+  };
+  for (const Push& push :
+       {Push{"push and circle",
+             "Push it towards the board and back while you tip it around in a circle",
+             Vector3d::UnitX(), Vector3d::UnitY()},
+        Push{"push, roll and turn",
+             "Push it towards the board and back, rolling it on the way; "
+             "in passing, turn it left and right",
+             Vector3d::UnitZ(), Vector3d::UnitY()},
+        Push{"push, roll and nod",
+             "Push it towards the board and back, rolling it on the way; "
+             "in passing, nod it up and down",
+             Vector3d::UnitZ(), Vector3d::UnitX()}}) {
+    Gesture gesture;
+    gesture.name = push.name;
+    gesture.words = push.words;
+    gesture.T_g_c = setting.T_g_c;
+    gesture.turn = kWidestTurn * push.turn;
+    gesture.turn_aside = kWidestTurn * push.turn_aside;
+    gesture.shift = setting.hand.reach_m * Vector3d::UnitZ();
+    add(Fitted(setting, gesture));
+  }
 
   // A camera that turns right has the board on its left.
   struct Corner {

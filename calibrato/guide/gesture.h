@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calibrato/geometry/rigid3.h"
+#include "calibrato/guide/camera_loop.h"
 #include "calibrato/sensors/camera_model.h"
 #include "calibrato/sensors/measurements.h"
 
@@ -16,7 +18,8 @@ namespace calibrato {
 ///     T_g_c(t) = T_g_c * (Exp(turn o(t) + turn_aside q(t)), shift o(t))
 ///
 /// with o = w sin(2 pi t / period), q = w cos(2 pi t / period) and w a window that rises and falls
-/// within half a period, so that it begins and ends at rest in its middle.
+/// within half a period, so that it begins and ends at rest in its middle. Or, where it has a loop,
+/// once around that, T_g_c * PoseAt(loop, theta), with the phase of a quintic (time_law.h).
 struct Gesture {
   std::string name;   ///< "turn about y", short, for lists.
   std::string words;  ///< "Turn the camera left and right", for whoever holds it.
@@ -27,6 +30,7 @@ struct Gesture {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();       ///< To either side, along these axes [m].
   double period_s = 1.0;                                 ///< Of one to and fro, > 0 [s].
   double duration_s = 2.0;                               ///< > 0
+  std::optional<CameraLoop> loop{};                      ///< Made instead of turns and shifts.
 };
 
 /// @param t_s  In [0, duration_s]; clamped outside [s].
@@ -57,10 +61,14 @@ struct GestureSetting {
 /// middle of the image.
 [[nodiscard]] Rigid3 FacingBoard(const BoardView& points, const Rigid3& T_g_c);
 
+/// True where the whole board stays in view all along, with a little margin.
+[[nodiscard]] bool KeepsBoardInView(const GestureSetting& setting, const Gesture& gesture);
+
 /// What can be asked for in a setting: turns about and shifts along each axis, a tip in a circle,
-/// as fast as the hand is and as wide as the board stays in view; and places to hold the camera at,
-/// with the board near a corner of the image, from nearby, and from aside. What does not keep the
-/// board in view, or hardly moves, is left out. The order is fixed.
+/// pushes to the board and back that turn about two axes on their way, as fast as the hand is and
+/// as wide as the board stays in view; and places to hold the camera at, with the board near a
+/// corner of the image, from nearby, and from aside. What does not keep the board in view, or
+/// hardly moves, is left out. The order is fixed.
 [[nodiscard]] std::vector<Gesture> GesturesFor(const GestureSetting& setting);
 
 }  // namespace calibrato

@@ -52,6 +52,57 @@ double BestShare(const std::vector<ParameterProgress>& before,
   return best;
 }
 
+// What is known and how far that is from what is wanted, gesture by gesture of a plan.
+class Prospect {
+ public:
+  Prospect(const GuideProblem& problem, const LiveEstimate& estimate,
+           const std::vector<Gesture>& gestures, const GesturePlanOptions& options)
+      : problem_(problem),
+        estimate_(estimate),
+        gestures_(gestures),
+        options_(options),
+        expected_(ParallelMap<Eigen::MatrixXd>(
+            gestures.size(),
+            [&](size_t k) {
+              return ExpectFromGesture(problem, estimate, gestures[k], options.camera_rate_hz);
+            })),
+        known_(estimate.information),
+        progress_(estimate.progress) {}
+
+  [[nodiscard]] double TimeOf(size_t k) const { return gestures_[k].duration_s + options_.way_s; }
+  // Of the distance that is left, a second.
+  [[nodiscard]] double RateOf(size_t k) const {
+    return (DistanceFromWanted(progress_) - DistanceFromWanted(ProgressWith(k))) / TimeOf(k);
+  }
+  [[nodiscard]] bool is_reached() const {
+    return std::all_of(progress_.begin(), progress_.end(),
+                       [](const ParameterProgress& parameter) { return parameter.is_reached(); });
+  }
+  void Add(size_t k, GuidePlan* plan) {
+    progress_ = ProgressWith(k);
+    known_ += expected_[k];
+    plan->gestures.push_back(gestures_[k]);
+    plan->time_left_s += TimeOf(k);
+    if (is_judged_ || is_reached() || plan->time_left_s < kHalfMinute) return;
+    is_judged_ = true;
+    plan->more_helps = BestShare(estimate_.progress, progress_) < kLeastGain;
+  }
+
+ private:
+  [[nodiscard]] std::vector<ParameterProgress> ProgressWith(size_t k) const {
+    return ProgressOf(known_ + expected_[k], LayoutOf(problem_), estimate_.camera, problem_.wanted);
+  }
+
+  const GuideProblem& problem_;
+  const LiveEstimate& estimate_;
+  const std::vector<Gesture>& gestures_;
+  const GesturePlanOptions& options_;
+  std::vector<Eigen::MatrixXd> expected_;
+  Eigen::MatrixXd known_;
+  std::vector<ParameterProgress> progress_;
+  bool is_judged_ = false;
+};
+
 }  // namespace
 
 Eigen::MatrixXd ExpectFromGesture(const GuideProblem& problem, const LiveEstimate& estimate,
@@ -95,41 +146,33 @@ GuidePlan PlanGestures(const GuideProblem& problem, const LiveEstimate& estimate
   GuidePlan plan;
   plan.is_reached = estimate.is_reached();
   if (plan.is_reached || gestures.empty()) return plan;
-  const auto expected = ParallelMap<Eigen::MatrixXd>(gestures.size(), [&](size_t k) {
-    return ExpectFromGesture(problem, estimate, gestures[k], options.camera_rate_hz);
-  });
-  const auto progress_of = [&](const Eigen::MatrixXd& information) {
-    return ProgressOf(information, LayoutOf(problem), estimate.camera, problem.wanted);
-  };
-  Eigen::MatrixXd known = estimate.information;
-  std::vector<ParameterProgress> progress = estimate.progress;
-  bool is_judged = false;
-  for (int step = 0; step < options.max_gestures; ++step) {
-    const double distance = DistanceFromWanted(progress);
+  Prospect prospect(problem, estimate, gestures, options);
+  for (int step = 0; step < options.max_gestures && !prospect.is_reached(); ++step) {
     double best_rate = 0.0;
     size_t best = gestures.size();
     for (size_t k = 0; k < gestures.size(); ++k) {
-      const double after = DistanceFromWanted(progress_of(known + expected[k]));
-      const double rate = (distance - after) / (gestures[k].duration_s + options.way_s);
+      const double rate = prospect.RateOf(k);
       if (!(rate > best_rate)) continue;
       best_rate = rate;
       best = k;
     }
     if (best == gestures.size()) break;
-    known += expected[best];
-    progress = progress_of(known);
-    plan.gestures.push_back(gestures[best]);
-    plan.time_left_s += gestures[best].duration_s + options.way_s;
-    const bool is_reached =
-        std::all_of(progress.begin(), progress.end(),
-                    [](const ParameterProgress& parameter) { return parameter.is_reached(); });
-    if (is_reached) return plan;
-    if (!is_judged && plan.time_left_s >= kHalfMinute) {
-      is_judged = true;
-      plan.more_helps = BestShare(estimate.progress, progress) < kLeastGain;
-    }
+    prospect.Add(best, &plan);
   }
   if (plan.gestures.empty()) plan.more_helps = false;
+  return plan;
+}
+
+GuidePlan PlanInOrder(const GuideProblem& problem, const LiveEstimate& estimate,
+                      const std::vector<Gesture>& gestures, size_t first,
+                      const GesturePlanOptions& options) {
+  GuidePlan plan;
+  plan.is_reached = estimate.is_reached();
+  if (plan.is_reached || gestures.empty()) return plan;
+  Prospect prospect(problem, estimate, gestures, options);
+  for (int step = 0; step < options.max_gestures && !prospect.is_reached(); ++step) {
+    prospect.Add((first + static_cast<size_t>(step)) % gestures.size(), &plan);
+  }
   return plan;
 }
 

@@ -38,4 +38,11 @@ struct GesturePlanOptions {
                                      const std::vector<Gesture>& gestures,
                                      const GesturePlanOptions& options);
 
+/// The gestures of a motion that was chosen beforehand, in their order from one of them on, again
+/// and again until what is wanted is reached, with the same judgement of when and whether.
+/// @param first  Taken modulo their number.
+[[nodiscard]] GuidePlan PlanInOrder(const GuideProblem& problem, const LiveEstimate& estimate,
+                                    const std::vector<Gesture>& gestures, size_t first,
+                                    const GesturePlanOptions& options);
+
 }  // namespace calibrato

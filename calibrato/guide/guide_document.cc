@@ -29,6 +29,7 @@ Value GuideDocument(const GuideSnapshot& snapshot, const GuidePhase& phase, Reso
   document.Set("elapsed_s", snapshot.elapsed_s).Set("time_left_s", snapshot.time_left_s);
   document.Set("num_frames", snapshot.num_frames).Set("num_views", snapshot.num_views);
   document.Set("num_imu_samples", snapshot.num_imu_samples);
+  document.Set("num_dropped_frames", snapshot.num_dropped_frames);
   document.Set("frame_to_hint_ms", phase.frame_to_hint_ms);
   Value corners = Value::Array();
   if (snapshot.view) {

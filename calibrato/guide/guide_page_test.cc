@@ -291,8 +291,8 @@ TEST_F(ServedPage, OutlivesAHostileClient) {
 }
 
 TEST(GuidePage, RefusesAHostThatIsNoneOfThisMachine) {
-  EXPECT_THROW(HttpServer("192.0.2.1", 0, {}), InputError);
-  EXPECT_THROW(HttpServer("not-an-address", 0, {}), InputError);
+  EXPECT_THROW(HttpServer("192.0.2.1", 0, {}, "another"), InputError);
+  EXPECT_THROW(HttpServer("not-an-address", 0, {}, "another"), InputError);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "calibrato/calibration/plane_pose.h"
 #include "calibrato/detection/detect.h"
 #include "calibrato/diagnosis/image_quality.h"
+#include "calibrato/guide/motion_gestures.h"
 
 namespace calibrato {
 namespace {
@@ -54,7 +55,7 @@ std::vector<Eigen::Vector2d> OutlineFrom(const CameraModel& camera, const BoardV
 GuideSession::GuideSession(const Board& board, GuideProblem problem, GuideOptions options)
     : board_(board),
       problem_(std::move(problem)),
-      options_(options),
+      options_(std::move(options)),
       estimate_(GuessBefore(problem_)) {
   solver_ = std::thread([this] { SolveAgainAndAgain(); });
 }
@@ -117,6 +118,7 @@ bool GuideSession::AddSearchedView(Time stamp, std::optional<BoardView> view, bo
     last_seen_s_ = now_s;
     if (is_sharp) ++good_frames_in_gesture_;
     if (!start_) start_ = *view;
+    coverage_.Add(ViewParametersOf(*view, problem_.resolution));
     data_.views.push_back(std::move(*view));
   } else if (now_s - last_seen_s_ > kLost) {
     Warn("the board is not seen");
@@ -148,6 +150,12 @@ bool GuideSession::AddAccel(const VectorSample& sample) {
 void GuideSession::AddWarning(const std::string& words) {
   const std::lock_guard lock(mutex_);
   Warn(words);
+}
+
+void GuideSession::AddDroppedFrames(int number) {
+  const std::lock_guard lock(mutex_);
+  num_dropped_frames_ += number;
+  dropped_at_s_ = SecondsSince(first_stamp_, last_stamp_);
 }
 
 bool GuideSession::AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
@@ -187,7 +195,24 @@ void GuideSession::TakeNextGesture() {
   gesture_.reset();
   if (next_in_plan_ >= plan_.gestures.size()) return;
   gesture_ = plan_.gestures[next_in_plan_++];
+  ++num_taken_;
   gesture_begin_s_ = SecondsSince(first_stamp_, last_stamp_);
+}
+
+GuidePlan GuideSession::PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g, double pace,
+                                 double rate_hz, size_t num_taken) const {
+  GestureSetting setting{estimate.camera, problem_.resolution, problem_.points,
+                         FacingBoard(problem_.points, T_c_g.Inverse()), options_.hand};
+  setting.hand.speed *= pace;
+  setting.hand.acceleration *= pace * pace;
+  setting.hand.angular_speed *= pace;
+  setting.hand.angular_acceleration *= pace * pace;
+  const GesturePlanOptions plan{rate_hz, kWay, 40};
+  if (options_.motion) {
+    const std::vector<Gesture> loops = GesturesOfMotion(setting, *options_.motion);
+    if (!loops.empty()) return PlanInOrder(problem_, estimate, loops, num_taken, plan);
+  }
+  return PlanGestures(problem_, estimate, GesturesFor(setting), plan);
 }
 
 void GuideSession::End(const std::string& why) {
@@ -221,6 +246,7 @@ void GuideSession::SolveAgainAndAgain() {
     GuideData data = data_;
     BoardView start = *start_;
     const double pace = pace_;
+    const size_t num_taken = num_taken_;
     lock.unlock();
     LiveEstimate estimate = GuessBefore(problem_);
     GuidePlan plan;
@@ -228,13 +254,7 @@ void GuideSession::SolveAgainAndAgain() {
     try {
       estimate = EstimateSoFar(problem_, data);
       if (const auto T_c_g = PoseFromView(estimate.camera, start)) {
-        GestureSetting setting{estimate.camera, problem_.resolution, problem_.points,
-                               FacingBoard(problem_.points, T_c_g->Inverse()), options_.hand};
-        setting.hand.speed *= pace;
-        setting.hand.acceleration *= pace * pace;
-        setting.hand.angular_speed *= pace;
-        setting.hand.angular_acceleration *= pace * pace;
-        plan = PlanGestures(problem_, estimate, GesturesFor(setting), {rate_hz, kWay, 40});
+        plan = PlanFrom(estimate, *T_c_g, pace, rate_hz, num_taken);
       }
     } catch (const std::exception& error) {  // Of data; the recording goes on.
       fault = error.what();
@@ -244,6 +264,11 @@ void GuideSession::SolveAgainAndAgain() {
     estimate_ = std::move(estimate);
     plan_ = std::move(plan);
     has_new_plan_ = true;
+    // What was taken meanwhile was the beginning of this plan's order.
+    if (options_.motion) {
+      has_new_plan_ = false;
+      next_in_plan_ = num_taken_ - num_taken;
+    }
     solved_until_s_ = now_s;
     const bool is_measured = (problem_.known_camera || estimate_.camera_is_measured) &&
                              (!problem_.imu || estimate_.extrinsics_are_measured);
@@ -267,9 +292,14 @@ GuideSnapshot GuideSession::Snapshot() const {
   snapshot.progress = estimate_.progress;
   snapshot.is_measured =
       problem_.imu ? estimate_.extrinsics_are_measured : estimate_.camera_is_measured;
-  snapshot.coverage = CoverageOf(data_.views, problem_.resolution);
+  snapshot.coverage = coverage_.coverage();
   for (const Warning& warning : warnings_) {
     if (now_s - warning.at_s <= kWarningLasts) snapshot.warnings.push_back(warning.words);
+  }
+  snapshot.num_dropped_frames = num_dropped_frames_;
+  if (num_dropped_frames_ > 0 && now_s - dropped_at_s_ <= kWarningLasts) {
+    snapshot.warnings.push_back("frames come faster than this machine takes them: " +
+                                std::to_string(num_dropped_frames_) + " were left out");
   }
   snapshot.time_left_s = plan_.time_left_s;
   snapshot.ended = ended_;

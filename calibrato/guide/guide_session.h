@@ -8,10 +8,11 @@
 #include <thread>
 #include <vector>
 
-#include "calibrato/calibration/coverage.h"
+#include "calibrato/calibration/coverage_range.h"
 #include "calibrato/guide/gesture.h"
 #include "calibrato/guide/gesture_choice.h"
 #include "calibrato/guide/live_estimate.h"
+#include "calibrato/motion/motion.h"
 #include "calibrato/sensors/board.h"
 #include "calibrato/sensors/image.h"
 
@@ -21,6 +22,9 @@ struct GuideOptions {
   HandLimits hand;
   double solve_period_s = 2.0;    ///< Between two solves, by the camera's clock > 0.
   double max_duration_s = 600.0;  ///< Then it ends, whatever is reached > 0.
+  /// Its loops are asked for, in their order and again (motion_gestures.h), instead of what is
+  /// expected to tell most.
+  std::optional<Motion> motion{};
 };
 
 /// All that a page shows of a session at one moment.
@@ -29,6 +33,7 @@ struct GuideSnapshot {
   int num_frames = 0;
   int num_views = 0;  ///< Frames with the board.
   int num_imu_samples = 0;
+  int num_dropped_frames = 0;      ///< That came faster than they could be taken.
   std::optional<BoardView> view;   ///< Of the latest frame.
   std::optional<Gesture> gesture;  ///< To make now ...
   double gesture_left_s = 0.0;     ///< ... for so long ...
@@ -69,6 +74,8 @@ class GuideSession {
   bool AddAccel(const VectorSample& sample);
   /// Shown for the next seconds, once however often it is given.
   void AddWarning(const std::string& words);
+  /// Frames that the camera had and nobody could take: counted, and warned of.
+  void AddDroppedFrames(int number);
 
   /// Ends it, for a reason of the caller's: "the camera is gone". The first reason stands.
   void End(const std::string& why);
@@ -87,6 +94,8 @@ class GuideSession {
   bool AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
                  const char* sensor);
   void TakeNextGesture();
+  [[nodiscard]] GuidePlan PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g, double pace,
+                                   double rate_hz, size_t num_taken) const;
   bool AddSearchedView(Time stamp, std::optional<BoardView> view, bool is_sharp);
   void SolveAgainAndAgain();
 
@@ -101,8 +110,10 @@ class GuideSession {
   GuidePlan plan_;
   bool has_new_plan_ = false;
   size_t next_in_plan_ = 0;
+  size_t num_taken_ = 0;            // Gestures, so far.
   std::optional<BoardView> start_;  // The first view: gestures are made around it.
   std::optional<BoardView> latest_;
+  CoverageRange coverage_;
   std::optional<Gesture> gesture_;
   double gesture_begin_s_ = 0.0;
   int frames_in_gesture_ = 0;
@@ -112,6 +123,8 @@ class GuideSession {
   Time last_stamp_;
   double last_seen_s_ = 0.0;
   int num_frames_ = 0;
+  int num_dropped_frames_ = 0;
+  double dropped_at_s_ = 0.0;
   size_t samples_at_last_check_ = 0;
   double last_check_s_ = 0.0;
   std::vector<Warning> warnings_;

@@ -101,6 +101,48 @@ TEST(GuideSession, AsksForGesturesAndEndsWhenAllIsReached) {
   EXPECT_LT(last.elapsed_s, 11.9);
 }
 
+// Loop after loop, whatever would tell more, and again from the first.
+TEST(GuideSession, AsksForTheLoopsOfAMotionInTheirOrder) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 25.0;
+  GuideOptions options;
+  options.motion = HandcraftedMotion(Task::kExtrinsic);
+  for (Loop& loop : options.motion->loops) loop.duration_s = 3.0;
+  GuideProblem problem = ProblemOf(truth);
+  problem.wanted = {1e-9, 1e-9, 1e-9, 1e-9};  // Never reached.
+  GuideSession session(truth.board, problem, options);
+  const auto source = OpenReplaySource(RecordingOf(truth), 0.0, {});
+  const FrameSource::ImuSink sink{[&](const VectorSample& gyro, const VectorSample& accel) {
+                                    session.AddGyro(gyro);
+                                    session.AddAccel(accel);
+                                  },
+                                  {},
+                                  {}};
+  std::vector<std::string> names;
+  for (int k = 0; auto frame = source->Next(sink, [] { return false; }); ++k) {
+    session.AddView(frame->stamp, frame->view);
+    if (k % 20 == 0) session.WaitForSolve();
+    const auto gesture = session.Snapshot().gesture;
+    if (gesture && (names.empty() || names.back() != gesture->name)) names.push_back(gesture->name);
+  }
+  ASSERT_GE(names.size(), 4U);
+  for (size_t k = 0; k < names.size(); ++k) {
+    EXPECT_EQ(names[k], "loop " + std::to_string(k % 3 + 1));
+  }
+}
+
+TEST(GuideSession, CountsFramesThatCameTooFast) {
+  const SyntheticCameraImu truth;
+  GuideSession session(truth.board, ProblemOf(truth), {});
+  EXPECT_TRUE(session.Snapshot().warnings.empty());
+  session.AddDroppedFrames(3);
+  session.AddDroppedFrames(2);
+  const GuideSnapshot snapshot = session.Snapshot();
+  EXPECT_EQ(snapshot.num_dropped_frames, 5);
+  ASSERT_EQ(snapshot.warnings.size(), 1U);
+  EXPECT_NE(snapshot.warnings[0].find("5 were left out"), std::string::npos);
+}
+
 TEST(GuideSession, WarnsOfStampsSilenceAndALostBoard) {
   const SyntheticCameraImu truth;
   GuideSession session(truth.board, ProblemOf(truth), {});

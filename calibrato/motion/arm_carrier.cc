@@ -11,6 +11,7 @@
 #include "calibrato/motion/arm_clearance.h"
 #include "calibrato/motion/board_in_view.h"
 #include "calibrato/motion/joint_motion.h"
+#include "calibrato/motion/joint_path_checks.h"
 #include "calibrato/motion/joint_path_cost.h"
 #include "calibrato/motion/joint_path_refinement.h"
 #include "calibrato/motion/joint_path_search.h"
@@ -22,18 +23,6 @@
 
 namespace calibrato {
 namespace {
-
-PosePath PosesAlong(const Motion& motion) {
-  PosePath poses;
-  poses.start = LoopPoseAt(motion.base_pose, LoopCoefficients::Zero(), 0.0);
-  for (const Loop& loop : motion.loops) {
-    PosePath::Loop& loop_poses = poses.loops.emplace_back();
-    for (int i = 1; i < kNumWayPoints; ++i) {
-      loop_poses[i - 1] = LoopPoseAt(motion.base_pose, loop.coefficients, WayPointPhase(i));
-    }
-  }
-  return poses;
-}
 
 // The least of a function of pose and last joint, over a fine grid of the last joint.
 template <typename Function>
@@ -68,69 +57,6 @@ Refusal OutOfReach(const Rigid3& T_b_e) {
   return refusal;
 }
 
-// Of the first joint that leaves its range.
-std::optional<Refusal> CheckRange(const JointRange& taken, const JointRange& range) {
-  Refusal refusal;
-  refusal.unit = "rad";
-  for (int i = 0; i < taken.lower.size(); ++i) {
-    const std::string joint = "joint " + std::to_string(i + 1);
-    refusal.value = taken.lower[i];
-    refusal.limit = joint + " lower limit";
-    refusal.bound = range.lower[i];
-    if (!(refusal.value >= refusal.bound)) return refusal;
-    refusal.value = taken.upper[i];
-    refusal.limit = joint + " upper limit";
-    refusal.bound = range.upper[i];
-    if (!(refusal.value <= refusal.bound)) return refusal;
-  }
-  return std::nullopt;
-}
-
-std::optional<Refusal> CheckJoints(const JointPath& path, const JointRange& range, size_t loop,
-                                   int way_point) {
-  const JointVector& q = path.At(loop, way_point);
-  if (std::optional<Refusal> refusal = CheckRange({q, q}, range)) return refusal;
-  const JointVector& before = path.At(loop, way_point - 1);
-  Refusal refusal;
-  refusal.unit = "rad";
-  refusal.bound = kMaxJointStep;
-  for (int i = 0; i < q.size(); ++i) {
-    refusal.limit = "joint " + std::to_string(i + 1) + " step between way-points";
-    refusal.value = std::abs(q[i] - before[i]);
-    if (!(refusal.value <= refusal.bound)) return refusal;
-  }
-  return std::nullopt;
-}
-
-// The first of the way-points that `check` refuses, with the number of them.
-template <typename Check>
-std::optional<Refusal> CheckWayPoints(size_t num_loops, const Check& check) {
-  std::optional<Refusal> first;
-  int num_bad_way_points = 0;
-  for (size_t loop = 0; loop < num_loops; ++loop) {
-    for (int i = 1; i <= kNumWayPoints; ++i) {
-      std::optional<Refusal> refusal = check(loop, i);
-      if (!refusal) continue;
-      ++num_bad_way_points;
-      if (first) continue;
-      first = std::move(refusal);
-      first->loop = static_cast<int>(loop);
-      first->way_point = i;
-    }
-  }
-  if (first) {
-    first->num_bad_way_points = num_bad_way_points;
-    first->num_way_points = kNumWayPoints * static_cast<int>(num_loops);
-  }
-  return first;
-}
-
-std::vector<LoopJointSpline> SplinesThrough(const JointPath& path) {
-  std::vector<LoopJointSpline> splines;
-  for (size_t loop = 0; loop < path.loops.size(); ++loop) splines.emplace_back(path, loop);
-  return splines;
-}
-
 // At every way-point and between them.
 bool FitsLimits(const JointPath& path, const JointRange& range) {
   return std::ranges::all_of(SplinesThrough(path), [&](const LoopJointSpline& spline) {
@@ -162,9 +88,12 @@ JointPathCosts CarefulPathCosts(const JointRange& range, const ClearanceCheck& c
   return costs;
 }
 
+// Narrower than the arm's own: its controller follows to within a fraction of a milliradian, and a
+// joint that is beyond its limit stops the arm.
 JointRange RangeOf(const ArmLimits& limits) {
-  return {.lower = Limits().lower.cwiseMax(limits.joint_lower),
-          .upper = Limits().upper.cwiseMin(limits.joint_upper)};
+  constexpr double kTracking = 1e-3;  // [rad]
+  return {.lower = (Limits().lower.array() + kTracking).matrix().cwiseMax(limits.joint_lower),
+          .upper = (Limits().upper.array() - kTracking).matrix().cwiseMin(limits.joint_upper)};
 }
 
 // The range, narrower by what the joints need beyond it.
@@ -193,23 +122,6 @@ JointPath Refined(const PosePath& poses, JointPath path, const JointPathCosts& c
   JointPath drawn_back = RefineJointPath(poses, path, cost);
   return FitsLimits(drawn_back, costs.back().range) ? drawn_back : path;
 }
-
-// How far the last joint turns from its start, on the way to a way-point.
-std::optional<Refusal> CheckWristTurn(const LoopJointSpline& spline, const JointVector& start,
-                                      const ArmLimits& limits, int way_point) {
-  const JointRange taken = spline.RangeOnTheWayTo(way_point);
-  Refusal refusal;
-  refusal.limit = "turn of the wrist";
-  refusal.unit = "rad";
-  refusal.value = std::max(start[6] - taken.lower[6], taken.upper[6] - start[6]);
-  refusal.bound = limits.max_wrist_turn;
-  if (refusal.value <= refusal.bound) return std::nullopt;
-  return refusal;
-}
-
-constexpr char kAwayFromSingularity[] =
-    "joints would have to turn without end there: choose another base_pose, make the motion "
-    "smaller, or add --scale-to-fit";
 
 std::optional<Refusal> CheckSingularity(const JointPath& path, size_t loop, int way_point) {
   const JointVector& q = path.At(loop, way_point);
@@ -258,49 +170,6 @@ Refusal WithReason(const JointChoices& choices, const JointRange& range, Refusal
   return gap;
 }
 
-// On the way to a way-point, itself included.
-std::optional<Refusal> CheckClearance(const LoopJointSpline& spline, const ClearanceCheck& check,
-                                      double clearance_m, int way_point) {
-  constexpr int kNumInstants = 4;
-  Refusal refusal;
-  refusal.unit = "m";
-  refusal.bound = clearance_m;
-  for (int k = 1; k <= kNumInstants; ++k) {
-    const double share = static_cast<double>(k) / kNumInstants;
-    const double theta = WayPointPhase(way_point - 1) + share * WayPointPhase(1);
-    const Phase phase{.theta = theta, .first = 0.0, .second = 0.0, .third = 0.0};
-    const Clearance clearance = check.Least(spline.At(phase).position);
-    refusal.limit = "clearance of " + clearance.what;
-    refusal.value = clearance.distance_m;
-    if (!(clearance.distance_m >= clearance_m)) return refusal;
-  }
-  return std::nullopt;
-}
-
-TimeLaw TimeLawOf(const Motion& motion, const JointPath& path, size_t loop) {
-  const auto stretch = [&](const TimeLaw& law) { return SmallestStretch(path, loop, law); };
-  if (motion.timing == Timing::kOptimal) {
-    const LoopJointSpline spline(path, loop);
-    return FastestTimeLaw([&](double theta) { return PhaseLimitsOfJoints(spline, theta); },
-                          stretch);
-  }
-  TimeLaw law{motion.loops[loop].duration_s, {}};
-  law.duration_s *= stretch(law);
-  return law;
-}
-
-TimedMotion Timed(const Motion& motion, const JointPath& path) {
-  std::vector<TimeLaw> laws;
-  for (size_t loop = 0; loop < motion.loops.size(); ++loop) {
-    laws.push_back(TimeLawOf(motion, path, loop));
-  }
-  TimedMotion timed;
-  timed.motion = motion;
-  timed.SetTimeLaws(laws);
-  timed.joint_path = TimedJointPath(path, laws);
-  return timed;
-}
-
 // Refines candidates and keeps the quickest that fits and the one with the fewest way-points that
 // do not.
 class Selection {
@@ -322,7 +191,8 @@ class Selection {
     if (!refusal) {
       // Only of a path that the joints can go.
       refusal = CheckWayPoints(num_loops, [&](size_t loop, int i) {
-        std::optional<Refusal> at_way_point = CheckWristTurn(splines[loop], path.start, limits_, i);
+        std::optional<Refusal> at_way_point =
+            CheckLastJointTurn(splines[loop], path.start, 6, limits_, i);
         if (!at_way_point) at_way_point = CheckSingularity(path, loop, i);
         return at_way_point ? at_way_point
                             : CheckClearance(splines[loop], clearance_, limits_.clearance_m, i);
@@ -330,7 +200,7 @@ class Selection {
       joints_fit_ = true;
     }
     if (!refusal) {
-      TimedMotion timed = Timed(motion_, path);
+      TimedMotion timed = TimedAlong(motion_, path, Limits());
       if (!quickest_ || timed.duration_s() < quickest_->duration_s()) quickest_ = std::move(timed);
     } else if (!fewest_bad_ || refusal->num_bad_way_points < fewest_bad_->num_bad_way_points) {
       fewest_bad_ = std::move(refusal);

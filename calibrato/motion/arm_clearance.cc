@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "calibrato/motion/carrier.h"
 
@@ -18,8 +19,21 @@ constexpr double kPostHalfWidth = 0.02;
 constexpr double kSensorRadius = 0.02;
 constexpr int kHand = 8;
 
-Capsule InBase(const PandaAxes& axes, const ArmPart& part) {
-  const Rigid3& T = part.link == kHand ? axes.T_b_e : axes.T_b_link[part.link - 1];
+std::vector<Rigid3> PandaFrames(const JointVector& q) {
+  const PandaAxes axes = AxesOf(q);
+  std::vector<Rigid3> frames(axes.T_b_link.begin(), axes.T_b_link.end());
+  frames.push_back(axes.T_b_e);
+  return frames;
+}
+
+std::vector<ArmPart> PandaParts(const Rig& rig) {
+  std::vector<ArmPart> parts = ArmParts();
+  parts.back().capsule = RightFinger(rig);
+  return parts;
+}
+
+Capsule InBase(const std::vector<Rigid3>& frames, const ArmPart& part) {
+  const Rigid3& T = frames[static_cast<size_t>(part.link) - 1];
   return {T * part.capsule.a, T * part.capsule.b, part.capsule.radius_m};
 }
 
@@ -153,20 +167,26 @@ double Distance(const Capsule& first, const Capsule& second) {
   return least - first.radius_m - second.radius_m;
 }
 
-ClearanceCheck::ClearanceCheck(const Rig& rig) : parts_(ArmParts()), things_(SurroundingsOf(rig)) {
-  parts_.back().capsule = RightFinger(rig);
+ClearanceCheck::ClearanceCheck(const Rig& rig)
+    : ClearanceCheck(rig, PandaParts(rig), PandaFrames, kHand - 1) {}
+
+ClearanceCheck::ClearanceCheck(const Rig& rig, std::vector<ArmPart> parts,
+                               std::function<std::vector<Rigid3>(const JointVector& q)> frames,
+                               int num_joints)
+    : frames_(std::move(frames)), parts_(std::move(parts)), things_(SurroundingsOf(rig)) {
+  const int hand = num_joints + 1;
   const Rigid3 T_e_i = rig.T_e_c0 * rig.T_c0_i;
-  parts_.push_back({"camera", kHand, {rig.T_e_c0.t, rig.T_e_c0.t, kSensorRadius}});
-  parts_.push_back({"IMU", kHand, {T_e_i.t, T_e_i.t, kSensorRadius}});
+  parts_.push_back({"camera", hand, {rig.T_e_c0.t, rig.T_e_c0.t, kSensorRadius}});
+  parts_.push_back({"IMU", hand, {T_e_i.t, T_e_i.t, kSensorRadius}});
   for (const KeepOutBox& box : rig.arm_limits.keep_out) {
     things_.push_back({box.name, {box.T_b_box, 0.5 * box.size_m}});
   }
 }
 
 Clearance ClearanceCheck::Least(const JointVector& q) const {
-  const PandaAxes axes = AxesOf(q);
+  const std::vector<Rigid3> frames = frames_(q);
   std::vector<Capsule> capsules;
-  for (const ArmPart& part : parts_) capsules.push_back(InBase(axes, part));
+  for (const ArmPart& part : parts_) capsules.push_back(InBase(frames, part));
   double least = std::numeric_limits<double>::infinity();
   const std::string* first = nullptr;
   const std::string* second = nullptr;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,7 +33,7 @@ struct Capsule {
 /// A part of the arm, in the frame of its link.
 struct ArmPart {
   std::string name;  ///< "link 5", "hand"
-  int link;          ///< 1 to 7 as in PandaAxes; 8 is the controlled frame e.
+  int link;          ///< From 1; one more than the arm has joints is the controlled frame e.
   Capsule capsule;
 };
 /// Links 1 to 7 and the hand with its fingers: capsules around the maker's shape of each.
@@ -56,10 +57,16 @@ struct Clearance {
 /// can't leave its place, against boxes.
 class ClearanceCheck {
  public:
+  /// Of the Panda.
   explicit ClearanceCheck(const Rig& rig);
+  /// Of any arm.
+  /// @param frames  Of the links: T_b_link of link 1, 2, .., then T_b_e.
+  ClearanceCheck(const Rig& rig, std::vector<ArmPart> parts,
+                 std::function<std::vector<Rigid3>(const JointVector& q)> frames, int num_joints);
   [[nodiscard]] Clearance Least(const JointVector& q) const;
 
  private:
+  std::function<std::vector<Rigid3>(const JointVector& q)> frames_;
   std::vector<ArmPart> parts_;
   std::vector<NamedBox> things_;
 };

@@ -7,12 +7,12 @@
 #include <numeric>
 #include <utility>
 
-#include "calibrato/base/input_error.h"
 #include "calibrato/geometry/rpy.h"
 #include "calibrato/motion/arm_carrier.h"
 #include "calibrato/motion/free_carrier.h"
 #include "calibrato/motion/joint_motion.h"
 #include "calibrato/motion/loop_state.h"
+#include "calibrato/motion/scale_to_fit.h"
 
 namespace calibrato {
 namespace {
@@ -21,12 +21,6 @@ std::string FormatDigits(double value, int digits) {
   char text[40];
   std::snprintf(text, sizeof(text), "%.*g", digits, value);
   return text;
-}
-
-Motion Scaled(const Motion& motion, double factor) {
-  Motion scaled = motion;
-  for (Loop& loop : scaled.loops) loop.coefficients *= factor;
-  return scaled;
 }
 
 }  // namespace
@@ -118,37 +112,8 @@ std::variant<TimedMotion, Refusal> PlanMotion(const Motion& motion, const Rig& r
 }
 
 TimedMotion PlanScaledToFit(const Motion& motion, const Rig& rig) {
-  std::variant<TimedMotion, Refusal> plan = PlanMotion(motion, rig);
-  if (auto* whole = std::get_if<TimedMotion>(&plan)) return std::move(*whole);
-
-  plan = PlanMotion(Scaled(motion, 0.0), rig);
-  if (const auto* refusal = std::get_if<Refusal>(&plan)) {
-    throw InputError({"the motion does not fit the " + CarrierName(motion.carrier) + " carrier", "",
-                      "not even its base pose does: " + refusal->Describe(),
-                      "choose another base_pose"});
-  }
-  // Beyond the tolerance only while nothing but zero is known to fit.
-  constexpr double kTolerance = 1e-3;
-  constexpr double kSmallestFactor = 1e-9;
-  double fits = 0.0;
-  double too_large = 1.0;
-  TimedMotion best;
-  while (too_large - fits > kTolerance || fits == 0.0) {
-    const double factor = 0.5 * (fits + too_large);
-    if (factor < kSmallestFactor) {
-      throw InputError({"the motion does not fit the " + CarrierName(motion.carrier) + " carrier",
-                        "", "its base pose lies on a limit of the carrier",
-                        "choose another base_pose"});
-    }
-    plan = PlanMotion(Scaled(motion, factor), rig);
-    if (auto* timed = std::get_if<TimedMotion>(&plan)) {
-      best = std::move(*timed);
-      best.scale = fits = factor;
-    } else {
-      too_large = factor;
-    }
-  }
-  return best;
+  return LargestThatFits(motion, "the " + CarrierName(motion.carrier) + " carrier",
+                         [&](const Motion& scaled) { return PlanMotion(scaled, rig); });
 }
 
 }  // namespace calibrato

@@ -71,6 +71,7 @@ double SmallestStretch(const JointPath& path, size_t loop, const TimeLaw& law,
   }
   const double by_motion = LargestDuring(
       law, passing_s, 1.0, [&](double t_s) { return StretchByMotion(joints_at(t_s), limits); });
+  if (!limits.torque.array().isFinite().any()) return by_motion;
   return LargestDuring(law, {}, by_motion,
                        [&](double t_s) { return StretchByTorque(joints_at(t_s), limits.torque); });
 }
@@ -93,7 +94,9 @@ PhaseLimits PhaseLimitsOfJoints(const LoopJointSpline& spline, double theta,
   at_phase.max_squared_speed = max_speed * max_speed;
   for (int i = 0; i < q.size(); ++i) {
     for (const double side : {1.0, -1.0}) {
+      if (!std::isfinite(limits.acceleration[i])) continue;
       at_phase.rows.push_back({side * first[i], side * second[i], limits.acceleration[i]});
+      if (!std::isfinite(limits.torque[i])) continue;
       const double f = side * friction[i];
       // sqrt(x) <= (x + v^2) / (2 v) and sqrt(x) >= x / v for x in [0, v^2].
       const double slope = f > 0.0 ? 0.5 * f / max_speed : f / max_speed;

@@ -13,6 +13,7 @@ namespace calibrato {
 /// The smallest factor >= 1 by which a loop must be stretched for every joint's velocity,
 /// acceleration, jerk and torque to stay within the limits (stretch.h). Between way-points the
 /// joints follow LoopJointSpline.
+/// Torques are the Panda's: of an arm whose dynamics are not known, their limits are infinite.
 /// @return Infinity if the torques do not even hold the arm still.
 [[nodiscard]] double SmallestStretch(const JointPath& path, size_t loop, const TimeLaw& law,
                                      const PandaLimits& limits = Limits());

@@ -11,30 +11,35 @@
 namespace calibrato {
 namespace {
 
+constexpr size_t kPandaJoints = 7;
 constexpr int kControlRate = 1000;  // [Hz], of the arm's controller
 constexpr int kMoveItRate = 100;    // [Hz]; its controllers interpolate by polynomials of degree 5
 
-void AppendNumbers(const JointVector& values, std::string* row) {
-  for (const double value : values) {
+void AppendNumbers(const JointVector& values, size_t num_joints, std::string* row) {
+  for (size_t i = 0; i < num_joints; ++i) {
     if (!row->empty()) *row += ",";
-    *row += FormatNumber(value);
+    *row += FormatNumber(values[static_cast<Eigen::Index>(i)]);
   }
 }
 
-std::string JointCsv(const TimedMotion& timed) {
+Value NumbersOf(const JointVector& values, size_t num_joints) {
+  return Value::Numbers(Eigen::VectorXd(values.head(static_cast<Eigen::Index>(num_joints))));
+}
+
+std::string JointCsv(const TimedMotion& timed, size_t num_joints) {
   std::string text = "t [s]";
   const std::vector<std::pair<std::string, std::string>> columns = {
       {"q", " [rad]"}, {"dq", " [rad/s]"}, {"ddq", " [rad/s^2]"}};
   for (const auto& [name, unit] : columns) {
-    for (int i = 1; i <= 7; ++i) text += "," + name + std::to_string(i) + unit;
+    for (size_t i = 1; i <= num_joints; ++i) text += "," + name + std::to_string(i) + unit;
   }
   text += "\n";
   int k = 0;
   for (const JointMotion& joints : JointSamples(timed, kControlRate)) {
     std::string row = FormatNumber(static_cast<double>(k++) / kControlRate);
-    AppendNumbers(joints.position, &row);
-    AppendNumbers(joints.velocity, &row);
-    AppendNumbers(joints.acceleration, &row);
+    AppendNumbers(joints.position, num_joints, &row);
+    AppendNumbers(joints.velocity, num_joints, &row);
+    AppendNumbers(joints.acceleration, num_joints, &row);
     text += row + "\n";
   }
   return text;
@@ -44,15 +49,16 @@ std::string FrankaCsv(const TimedMotion& timed) {
   std::string text;
   for (const JointMotion& joints : JointSamples(timed, kControlRate)) {
     std::string row;
-    AppendNumbers(joints.position, &row);
+    AppendNumbers(joints.position, kPandaJoints, &row);
     text += row + "\n";
   }
   return text;
 }
 
-std::string MoveItTrajectory(const TimedMotion& timed) {
+std::string MoveItTrajectory(const TimedMotion& timed, const RobotNames& robot) {
+  const size_t num_joints = robot.joints.size();
   Value names = Value::Array();
-  for (int i = 1; i <= 7; ++i) names.Append("panda_joint" + std::to_string(i));
+  for (const std::string& name : robot.joints) names.Append(name);
   Value points = Value::Array();
   int k = 0;
   for (const JointMotion& joints : JointSamples(timed, kMoveItRate)) {
@@ -61,14 +67,14 @@ std::string MoveItTrajectory(const TimedMotion& timed) {
     time.Set("sec", k / kMoveItRate).Set("nanosec", k % kMoveItRate * kNanosecondsPerPoint);
     ++k;
     Value point = Value::Object();
-    point.Set("positions", Value::Numbers(joints.position))
-        .Set("velocities", Value::Numbers(joints.velocity))
-        .Set("accelerations", Value::Numbers(joints.acceleration))
+    point.Set("positions", NumbersOf(joints.position, num_joints))
+        .Set("velocities", NumbersOf(joints.velocity, num_joints))
+        .Set("accelerations", NumbersOf(joints.acceleration, num_joints))
         .Set("time_from_start", std::move(time));
     points.Append(std::move(point));
   }
   Value header = Value::Object();
-  header.Set("frame_id", "panda_link0");
+  header.Set("frame_id", robot.base_frame);
   Value trajectory = Value::Object();
   trajectory.Set("header", std::move(header))
       .Set("joint_names", std::move(names))
@@ -103,12 +109,23 @@ RobotFormat RobotFormatFromName(const std::string& name) {
                     nearest ? "did you mean " + *nearest + "?" : "choose one of them"});
 }
 
-std::string RobotFile(const TimedMotion& timed, RobotFormat format) {
+const RobotNames& PandaNames() {
+  static const RobotNames names = [] {
+    RobotNames panda{{}, "panda_link0"};
+    for (size_t i = 1; i <= kPandaJoints; ++i) {
+      panda.joints.push_back("panda_joint" + std::to_string(i));
+    }
+    return panda;
+  }();
+  return names;
+}
+
+std::string RobotFile(const TimedMotion& timed, RobotFormat format, const RobotNames& names) {
   switch (format) {
     case RobotFormat::kJointCsv:
-      return JointCsv(timed);
+      return JointCsv(timed, names.joints.size());
     case RobotFormat::kMoveIt:
-      return MoveItTrajectory(timed);
+      return MoveItTrajectory(timed, names);
     case RobotFormat::kFrankaCsv:
       return FrankaCsv(timed);
   }

@@ -13,6 +13,13 @@ namespace calibrato {
 /// @pre The motion was planned on the arm.
 [[nodiscard]] std::vector<JointMotion> JointSamples(const TimedMotion& timed, int rate_hz);
 
+/// What a robot calls its joints, and the frame that its first one turns in.
+struct RobotNames {
+  std::vector<std::string> joints;
+  std::string base_frame;
+};
+[[nodiscard]] const RobotNames& PandaNames();
+
 /// What robots read (docs/formats.md section 3). All angles in rad, all numbers to the last bit, so
 /// that a reader's differences are the motion's.
 enum class RobotFormat {
@@ -23,6 +30,8 @@ enum class RobotFormat {
 [[nodiscard]] RobotFormat RobotFormatFromName(const std::string& name);  ///< @throws InputError
 
 /// @pre The motion was planned on the arm.
-[[nodiscard]] std::string RobotFile(const TimedMotion& timed, RobotFormat format);
+/// @param names  As many joints as the arm has: seven at most.
+[[nodiscard]] std::string RobotFile(const TimedMotion& timed, RobotFormat format,
+                                    const RobotNames& names = PandaNames());
 
 }  // namespace calibrato

@@ -112,17 +112,16 @@ TEST(GrowingRecording, OutlivesItsProcess) {
   }
 }
 
-// A limit on the size of files is a disk that is full, without the disk.
-TEST(GrowingRecording, KeepsWholeRowsWhenTheDiskIsFull) {
-  const TestFolder folder;
-  const std::string path = folder.path() + "/rec";
+// Writes an image, and then samples of an IMU onto a disk on which no file grows beyond this: a
+// limit on the size of files is a disk that is full, without the disk. In a process of its own.
+// @return whether the recording refused a sample for it.
+bool RefusesOnAFullDisk(const std::string& path, rlim_t most_bytes) {
   const pid_t child = fork();
-  ASSERT_GE(child, 0);
   if (child == 0) {
     signal(SIGXFSZ, SIG_IGN);
     GrowingRecording recording(path, {32, 24}, 1);
     recording.AddImage(At(0), Image(0));
-    const rlimit limit{4000, 4000};
+    const rlimit limit{most_bytes, most_bytes};
     setrlimit(RLIMIT_FSIZE, &limit);
     try {
       for (int k = 0; k < 1000; ++k) recording.AddImu(Sample(k), Sample(k));
@@ -132,9 +131,14 @@ TEST(GrowingRecording, KeepsWholeRowsWhenTheDiskIsFull) {
     _exit(0);
   }
   int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 7);
+  return child > 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
+         WEXITSTATUS(status) == 7;
+}
+
+TEST(GrowingRecording, KeepsWholeRowsWhenTheDiskIsFull) {
+  const TestFolder folder;
+  const std::string path = folder.path() + "/rec";
+  ASSERT_TRUE(RefusesOnAFullDisk(path, 4000));
   const Recording read = OpenRecording(path, {});
   const ImuStream& stream = read.imus.at(0).stream;
   ASSERT_GT(stream.gyro.size(), 20U);
@@ -144,25 +148,7 @@ TEST(GrowingRecording, KeepsWholeRowsWhenTheDiskIsFull) {
 TEST(GrowingRecording, KeepsItsImagesWhereNotEvenOneRowFits) {
   const TestFolder folder;
   const std::string path = folder.path() + "/rec";
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    signal(SIGXFSZ, SIG_IGN);
-    GrowingRecording recording(path, {32, 24}, 1);
-    recording.AddImage(At(0), Image(0));
-    const rlimit limit{10, 10};
-    setrlimit(RLIMIT_FSIZE, &limit);
-    try {
-      recording.AddImu(Sample(0), Sample(0));
-    } catch (const InputError&) {
-      _exit(7);
-    }
-    _exit(0);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 7);
+  ASSERT_TRUE(RefusesOnAFullDisk(path, 10));
   EXPECT_FALSE(std::filesystem::exists(path + "/imu0.csv"));
   const Recording read = OpenRecording(path, {});
   EXPECT_EQ(std::get<CameraImages>(read.cameras.at(0).data).list.size(), 1U);

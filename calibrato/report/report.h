@@ -39,6 +39,10 @@ namespace calibrato {
 ///
 /// "noise": as `calibrato noise` prints it (diagnosis/noise_document.h).
 ///
+/// "dry-run": what `calibrato export` prints of a motion, and
+///     {"joints": evaluation/joint_drawing.h, "motion": one of the motions below,
+///      "board_outline_b"}
+///
 /// "learn": learn result.json, and "training": the lines of training.jsonl, and "motion": one of
 /// the motions below, or an array of them; it may carry a "board_outline_b" of its own.
 ///

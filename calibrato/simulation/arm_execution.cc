@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -134,43 +135,36 @@ JointMotion JointsAt(const std::vector<JointVector>& position, double step_s, do
   return joints;
 }
 
-}  // namespace
+// What the arm is to do: at rest before and after it.
+struct Wanted {
+  double duration_s;
+  std::function<JointMotion(double t_s)> joints;
+  std::function<Rigid3(double t_s)> pose;  // T_b_e, that tracking is judged by
+};
 
-const ArmControl& PandaControl() {
-  static const ArmControl control = [] {
-    ArmControl c;
-    c.proportional << 12000.0, 12000.0, 8000.0, 8000.0, 3000.0, 3000.0, 2000.0;
-    c.integral << 20000.0, 20000.0, 12000.0, 12000.0, 5000.0, 5000.0, 3000.0;
-    c.derivative << 200.0, 200.0, 120.0, 120.0, 40.0, 40.0, 25.0;
-    return c;
-  }();
-  return control;
-}
-
-ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig, const TimedMotion& motion,
-                          Rng& rng, const ArmExecutionOptions& options) {
+ArmExecution Execute(const ArmScene& scene, const Rig& rig, const Wanted& wanted, Rng& rng,
+                     const ArmExecutionOptions& options) {
   mjModel* model = scene.model();
   mjData* data = scene.data();
-  const JointTrajectory wanted(motion);
   const ArmControl& control = *options.control;
   const double step_s = options.step_s;
   model->opt.timestep = step_s;
   mj_resetData(model, data);
-  Eigen::Map<JointVector>(data->qpos) = wanted.At(0.0).position;
+  Eigen::Map<JointVector>(data->qpos) = wanted.joints(0.0).position;
 
   const int gyro = model->sensor_adr[mj_name2id(model, mjOBJ_SENSOR, "gyroscope")];
   const int accel = model->sensor_adr[mj_name2id(model, mjOBJ_SENSOR, "accelerometer")];
   ArmExecution execution;
   execution.step_s = step_s;
   JointVector integral = JointVector::Zero();
-  const auto num_steps = static_cast<int>(std::ceil((motion.duration_s() + kAfterwards) / step_s));
+  const auto num_steps = static_cast<int>(std::ceil((wanted.duration_s + kAfterwards) / step_s));
   for (int k = 0; k <= num_steps; ++k) {
     const double t_s = k * step_s;
     mj_step1(model, data);
     const JointVector q = Eigen::Map<const JointVector>(data->qpos);
     const JointVector velocity = Eigen::Map<const JointVector>(data->qvel);
     CheckState(q, t_s);
-    const JointMotion goal = wanted.At(t_s);
+    const JointMotion goal = wanted.joints(t_s);
     const JointVector error = goal.position - q;
     JointVector torque = Eigen::Map<const JointVector>(data->qfrc_bias) +
                          control.proportional.cwiseProduct(error) +
@@ -200,9 +194,41 @@ ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig, const TimedMoti
   }
   for (size_t k = 0; k < execution.position.size(); ++k) {
     execution.tracking.push_back(
-        TrackingError(execution.position[k], motion.At(static_cast<double>(k) * step_s).T_b_e));
+        TrackingError(execution.position[k], wanted.pose(static_cast<double>(k) * step_s)));
   }
   return execution;
+}
+
+}  // namespace
+
+const ArmControl& PandaControl() {
+  static const ArmControl control = [] {
+    ArmControl c;
+    c.proportional << 12000.0, 12000.0, 8000.0, 8000.0, 3000.0, 3000.0, 2000.0;
+    c.integral << 20000.0, 20000.0, 12000.0, 12000.0, 5000.0, 5000.0, 3000.0;
+    c.derivative << 200.0, 200.0, 120.0, 120.0, 40.0, 40.0, 25.0;
+    return c;
+  }();
+  return control;
+}
+
+ArmExecution ExecuteOnArm(const ArmScene& scene, const Rig& rig, const TimedMotion& motion,
+                          Rng& rng, const ArmExecutionOptions& options) {
+  const JointTrajectory trajectory(motion);
+  const Wanted wanted{motion.duration_s(), [&](double t_s) { return trajectory.At(t_s); },
+                      [&](double t_s) { return motion.At(t_s).T_b_e; }};
+  return Execute(scene, rig, wanted, rng, options);
+}
+
+ArmExecution ExecuteCommands(const ArmScene& scene, const Rig& rig,
+                             const std::vector<JointVector>& commands, Rng& rng,
+                             const ArmExecutionOptions& options) {
+  assert(commands.size() > 3);
+  constexpr double kCycle = 1e-3;  // [s]
+  const auto joints = [&](double t_s) { return JointsAt(commands, kCycle, t_s); };
+  const Wanted wanted{kCycle * static_cast<double>(commands.size() - 1), joints,
+                      [&](double t_s) { return PandaPose(joints(t_s).position, nullptr); }};
+  return Execute(scene, rig, wanted, rng, options);
 }
 
 CarrierPath PathOf(const ArmExecution& execution, double duration_s) {

@@ -51,6 +51,13 @@ struct ArmExecutionOptions {
                                         const TimedMotion& motion, Rng& rng,
                                         const ArmExecutionOptions& options = {});
 
+/// The same from nothing but the joint positions that the arm is told, one a millisecond, as its
+/// controller gets them: between two of them it heads for the polynomial of PathOf.
+/// @param commands  [rad], at rest at both ends; four or more.
+[[nodiscard]] ArmExecution ExecuteCommands(const ArmScene& scene, const Rig& rig,
+                                           const std::vector<JointVector>& commands, Rng& rng,
+                                           const ArmExecutionOptions& options = {});
+
 /// The way of the controlled frame, continuous up to its accelerations: between two steps each
 /// joint follows the polynomial of degree 5 through the positions of both, with the velocities and
 /// accelerations that central differences of the steps give. Pose, rates and accelerations are

@@ -58,7 +58,7 @@ function parameterTable(camera) {
         name,
         withSigma(value, sigma),
         sigma === 0 ? "held" : number(sigma, 2),
-        kPixelParameters.includes(name) ? "px" : "1",
+        kPixelParameters.includes(name) ? "px" : "",
         sigma === 0 ? kNothing : number(relative, 2),
       ]);
     }

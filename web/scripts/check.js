@@ -197,23 +197,16 @@ function sharpnessCard(plots) {
 }
 
 function cornersCard(camera) {
-  const build = () => {
-    const corners = list(camera.corners);
-    const [width, height] = list(camera.resolution);
-    if (corners.length === 0 || !isNumber(width)) return "No corners were handed over.";
-    return {
-      data: [{
-        type: "scattergl", mode: "markers", x: corners.map((pixel) => pixel[0]),
-        y: corners.map((pixel) => pixel[1]), showlegend: false, hoverinfo: "skip",
-        marker: {size: 3, color: kBlue, opacity: 0.4},
-      }],
-      layout: {
-        xaxis: axis("u [px]", {range: [0, width], constrain: "domain"}),
-        yaxis: axis("v [px]", {range: [height, 0], scaleanchor: "x", constrain: "domain"}),
-      },
-    };
-  };
-  return card(`Where ${camera.name} saw corners`, "", plot(build));
+  const title = `Where ${camera.name} saw corners`;
+  const corners = list(camera.corners);
+  if (corners.length === 0 || list(camera.resolution).length !== 2) {
+    return card(title, "", emptyNote("No corners were handed over."));
+  }
+  return card(title, "The lens will be known only where there are corners.",
+              picture(camera.resolution, (pen) => {
+                pen.context.globalAlpha = 0.4;
+                pen.dots(corners, 1.5, () => kBlue);
+              }, () => [["u [px]", "v [px]"], ...corners]));
 }
 
 function checkReadingsCard(title, unit, envelopes, duration) {

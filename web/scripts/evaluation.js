@@ -30,13 +30,16 @@ function evaluationCell(row, column) {
   if (column.key === "policy") return policyCell(row.policy ?? kNothing);
   const value = row[column.key];
   if (typeof value === "string") return value;
+  if (column.unit === "" && Number.isInteger(value)) return number(value);
   const range = column.interval_key ? interval(row[column.interval_key]) : "";
-  if (range === "") return number(value, 3);
-  return element("span", {}, number(value, 3), element("span", {class: "interval"}, range));
+  if (range === "") return measured(value);
+  return element("span", {}, measured(value), element("span", {class: "interval"}, range));
 }
 
 function evaluationTable(setting, rows, columns) {
   const known = columns.filter(({key}) => {
+    // Which of several motions of one name: no news where there is one of each.
+    if (key === "member" && rows.every((row) => row.member === 1)) return false;
     return rows.some((row) => isNumber(row[key]) || typeof row[key] === "string");
   });
   return table(known.map(({name, unit}) => headerCell(["", name, unit])),
@@ -44,9 +47,10 @@ function evaluationTable(setting, rows, columns) {
                capitalised(setting));
 }
 
-/** The policy in a series' name, "learned" of "learned, scaled": its colour tells it. */
+/** The policy in a series' name, of "learned, scaled" and of "opencv, learned": its colour tells it. */
 function seriesPolicy(name) {
-  return String(name).replace(/, (scaled|cut)$/, "");
+  const parts = String(name).split(", ");
+  return parts.find((part) => Object.hasOwn(kPolicyColours, part)) ?? parts[0];
 }
 
 function seriesTrace(series, kind) {
@@ -55,10 +59,8 @@ function seriesTrace(series, kind) {
   const name = plotText(series.name);
   if (kind === "boxes") {
     return {
-      type: "box", name: inTwoLines(series.name), y: series.y, showlegend: false,
-      boxpoints: series.y.length <= kMostDots ? "all" : "outliers", jitter: 0.5, pointpos: 0,
-      marker: {color: colour, size: 4, opacity: 0.6}, line: {color: colour, width: 2},
-      fillcolor: "rgba(0,0,0,0)", hovertemplate: "%{y:.3g}<extra></extra>",
+      ...boxTrace(series.name, colour, series.y.length <= kMostDots, series.y),
+      hovertemplate: "%{x:.3g}<extra></extra>",
     };
   }
   const bars = list(series.low).length === series.y.length && series.low.length > 0
@@ -82,13 +84,16 @@ function chartCard(chart) {
   const series = list(chart.series).filter((each) => list(each.y).some(isNumber));
   return card(chart.title, chart.note, plot(() => {
     if (series.length === 0) return "No trial has this figure.";
-    const scaled = (isLogarithmic, title) => isLogarithmic ? logAxis(title) : axis(title);
-    const xaxis = chart.kind === "boxes" ? {automargin: true}
-                                         : scaled(chart.is_x_logarithmic, chart.x_title);
-    return {
-      data: series.map((each) => seriesTrace(each, chart.kind)),
-      layout: {xaxis, yaxis: scaled(chart.is_y_logarithmic, chart.y_title)},
+    const all = (key) => series.flatMap((each) => list(each[key]));
+    const scaled = (isLogarithmic, title, values) => {
+      return isLogarithmic ? logAxis(title, values) : axis(title);
     };
+    const values = scaled(chart.is_y_logarithmic, chart.y_title, all("y"));
+    // Boxes lie down.
+    const layout = chart.kind === "boxes"
+        ? {xaxis: values, yaxis: namesAxis(series.length)}
+        : {xaxis: scaled(chart.is_x_logarithmic, chart.x_title, all("x")), yaxis: values};
+    return {data: series.map((each) => seriesTrace(each, chart.kind)), layout};
   }, {height: "420px"}));
 }
 

@@ -25,11 +25,17 @@ function imageMap(maps, resolution) {
       // A little larger than it is: no seams.
       pen.context.fillRect(x, y, pen.scale * size[0] + 0.7, pen.scale * size[1] + 0.7);
     }
-  }, {
-    pixels: cells.map(pixelOf),
-    textOf: (i) => {
-      const value = shown.values_px[cells[i][0]][cells[i][1]];
-      return isNumber(value) ? `${number(value, 3)} px` : "not seen";
+  }, () => [
+    ["map", "u [px]", "v [px]", "value [px]"],
+    ...maps.flatMap((map) => cells.map(
+        ([r, c]) => [map.name, ...pixelOf([r, c]), map.values_px[r][c]])),
+  ], {
+    hover: {
+      pixels: cells.map(pixelOf),
+      textOf: (i) => {
+        const value = shown.values_px[cells[i][0]][cells[i][1]];
+        return isNumber(value) ? `${number(value, 3)} px` : "not seen";
+      },
     },
   });
   const stated = element("p", {class: "note"});

@@ -61,6 +61,11 @@ function traceSwitch(place, label, shown, traces) {
   return element("label", {}, box, ...label);
 }
 
+/** The same motion in another length has the same shape. */
+function isShownAtFirst(motion) {
+  return withoutPath(motion.policy) === motion.policy;
+}
+
 function motionCard(motions, outline_b, title) {
   const drawn = motions.filter((motion) => loopsOf(motion).length > 0);
   const note = "Path of the camera in the arm's base frame, each loop in a shade of its own; " +
@@ -72,7 +77,8 @@ function motionCard(motions, outline_b, title) {
   const place = plot(() => {
     const data = [];
     for (const motion of drawn) {
-      const traces = motionTraces(motion);
+      const traces = motionTraces(motion)
+          .map((trace) => ({...trace, name: motion.policy, visible: isShownAtFirst(motion)}));
       traceIndices.set(motion, traces.map((_, i) => data.length + i));
       data.push(...traces);
     }
@@ -98,8 +104,8 @@ function motionCard(motions, outline_b, title) {
     swatch.style.background = policyColour(motion.policy);
     const length = isNumber(motion.path_length_m) ? `, ${number(motion.path_length_m, 4)} m` : "";
     const seconds = isNumber(motion.motion_s) ? `, ${number(motion.motion_s, 3)} s` : "";
-    control.append(traceSwitch(place, [swatch, `${motion.policy}${length}${seconds}`], true,
-                               () => traceIndices.get(motion) ?? []));
+    control.append(traceSwitch(place, [swatch, `${motion.policy}${length}${seconds}`],
+                               isShownAtFirst(motion), () => traceIndices.get(motion) ?? []));
   }
   // The board is so much farther away than the path is long that the path would be drawn small.
   if (outline.length > 0) {

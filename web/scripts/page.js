@@ -8,6 +8,7 @@ const kKinds = {
   "check": {title: "Check of a recording", summary: checkSummary, section: checkSection},
   "diff": {title: "Two calibrations compared", summary: diffSummary, section: diffSection},
   "merge": {title: "Calibrations merged", summary: mergeSummary, section: mergeSection},
+  "dry-run": {title: "Dry run", summary: dryRunSummary, section: dryRunSection},
   "noise": {title: "Noise of an IMU", summary: noiseSummary, section: noiseSection},
   "learn": {title: "Learning", summary: learnSummary, section: learnSection},
   "table1": {title: "Motions compared", summary: table1Summary, section: table1Section},
@@ -84,8 +85,13 @@ function writePage(documents) {
   const overview = element("div", {class: "overview"});
   if (documents.length > 1) report.append(overview);
   for (const [i, result] of documents.entries()) {
+    // A title for what follows, which the page has already.
+    if (result.kind === "evaluation" && documents.length > 1) continue;
     const id = `section-${i + 1}`;
-    const section = element("section", {id}, element("h2", {}, titles[i]));
+    const section = element("section", {id});
+    // The page's own title says it already where there is nothing else.
+    const isTitle = documents.length === 1 && titles[i] === document.querySelector("h1").textContent;
+    if (!isTitle) section.append(element("h2", {}, titles[i]));
     section.append(...orReason(() => {
       const summary = kinds[i].summary(result);
       if (documents.length > 1) {

@@ -111,15 +111,26 @@ function addHover(place, canvas, currentPen, {pixels, textOf}) {
 /**
  * A picture of the image plane, painted when its turn comes and again when its size changes.
  * @param paint  (pen) draws in the image, of which what lies outside is cut off.
- * @param hover  {pixels, textOf: index -> text of lines}; optional.
+ * @param rowsOf  () -> what it shows as rows of cells, the first one of titles.
+ * @param more  {hover: {pixels, textOf: index -> text of lines}, name: its own, of several in a card}
  * @return the place; place.repaint() paints it anew.
  */
-function picture([width, height], paint, hover) {
+function picture([width, height], paint, rowsOf, {hover, name = ""} = {}) {
   const canvas = element("canvas", {});
   const place = element("div", {class: "picture"}, canvas);
+  const {left, right, top, bottom} = kPictureMargin;
   let pen = null;
+  const paintAll = (made) => {
+    const {context, scale} = made;
+    paintAxes(made, [width, height]);
+    context.save();
+    context.beginPath();
+    context.rect(left, top, scale * width, scale * height);
+    context.clip();
+    paint(made);
+    context.restore();
+  };
   const repaint = () => {
-    const {left, right, top, bottom} = kPictureMargin;
     const across = place.clientWidth;
     if (across <= left + right) return;
     const scale = (across - left - right) / width;
@@ -131,18 +142,18 @@ function picture([width, height], paint, hover) {
     const context = canvas.getContext("2d");
     context.scale(fine, fine);
     pen = new Pen(context, scale);
-    paintAxes(pen, [width, height]);
-    context.save();
-    context.beginPath();
-    context.rect(left, top, scale * width, scale * height);
-    context.clip();
-    paint(pen);
-    context.restore();
+    paintAll(pen);
+  };
+  const svgOf = () => {
+    const sheet = new SvgSheet(pen.scale * width + left + right, pen.scale * height + top + bottom);
+    paintAll(new Pen(sheet, pen.scale));
+    return sheet.text();
   };
   place.repaint = repaint;
   if (hover && kHover) addHover(place, canvas, () => pen, hover);
   whenItsTurnComes(place, () => {
     repaint();
+    place.after(saveButtons(place, name, rowsOf, svgOf));
     let painted = place.clientWidth;
     new ResizeObserver(() => {
       if (place.clientWidth !== painted) repaint();

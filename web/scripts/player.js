@@ -1,6 +1,7 @@
 // A motion played through time: the arm, where there is one, its camera and the board.
 
 const kPlayerFps = 10;
+const kCameraWords = "camera at x %{x:.3f}, y %{y:.3f}, z %{z:.3f} m<extra></extra>";
 
 /** The vector turned by the quaternion [x, y, z, w]. */
 function turned([x, y, z, w], v) {
@@ -36,7 +37,7 @@ function stillTraces(motion, outline) {
   const traces = [{
     type: "scatter3d", mode: "lines", ...polylines([motion.played.camera_b]), showlegend: false,
     name: "way of the camera", line: {width: 2, color: shade(colour, 0.3)},
-    hoverinfo: "skip",
+    hovertemplate: kCameraWords,
   }];
   if (outline.length > 0) {
     traces.push({
@@ -52,7 +53,8 @@ function movingTraces(motion, step, size) {
   const arm = armPoints(list(motion.played.arm_b)[step]);
   return [
     {
-      type: "scatter3d", mode: "lines", showlegend: false, name: "camera", hoverinfo: "skip",
+      type: "scatter3d", mode: "lines", showlegend: false, name: "camera",
+      hovertemplate: kCameraWords,
       ...polylines(cameraLines(motion.played.camera_b[step], size)),
       line: {width: 4, color: policyColour(motion.policy)},
     },
@@ -94,7 +96,7 @@ function playerCards(motions, outline_b, title) {
     const bounds = playedBounds(motion, outline, kCameraSize);
     const data = [...movingTraces(motion, step, kCameraSize), ...stillTraces(motion, outline)];
     const corners = {...polylines([[0, 1].map((i) => bounds.map((range) => range[i]))])};
-    const made = scene(["x [m]", "y [m]", "z [m]"], [-1.2, -1.4, 0.8], [corners]);
+    const made = scene(["x [m]", "y [m]", "z [m]"], [-0.7, -1.7, 0.7], [corners]);
     ["xaxis", "yaxis", "zaxis"].forEach((name, k) => { made[name].range = bounds[k]; });
     // The box is mostly air.
     for (const side of ["x", "y", "z"]) made.camera.eye[side] *= 0.75;

@@ -85,19 +85,37 @@ function axis(title, more = {}) {
   return {
     title: {text: title, standoff: 8, font: {size: 13}},
     automargin: true,
+    exponentformat: "power",
     gridcolor: "#e8ebef",
     zerolinecolor: "#c5cbd2",
     ...more,
   };
 }
 
-/** Logarithmic, with every tick written out: 0.01, 0.02, 0.05, 0.1 .. */
-function logAxis(title) {
+/** Names of categories, one below the other, the first at the top. */
+function namesAxis(numNames) {
+  return {
+    automargin: true, type: "category", range: [numNames - 0.5, -0.5], ticks: "outside", ticklen: 6,
+    tickcolor: "rgba(0,0,0,0)", gridcolor: "#e8ebef",
+  };
+}
+
+/**
+ * Logarithmic, with every tick written out: 0.01, 0.02, 0.05, 0.1 ..; only powers of ten where the
+ * values span more than three of them.
+ */
+function logAxis(title, values = []) {
+  const known = values.filter((x) => x > 0);
+  const span = known.reduce((a, b) => Math.max(a, b), 0) /
+      known.reduce((a, b) => Math.min(a, b), Infinity);
   const ticks = [];
   for (let power = -12; power < 9; ++power) {
-    ticks.push(...[1, 2, 5].map((digit) => Number(`${digit}e${power}`)));
+    const digits = span > 1e3 ? [1] : [1, 2, 5];
+    ticks.push(...digits.map((digit) => Number(`${digit}e${power}`)));
   }
-  return axis(title, {type: "log", tickvals: ticks, ticktext: ticks.map(String)});
+  const words = ticks.map((tick) => tick < 1e-4 || tick >= 1e6
+      ? tick.toExponential(0).replace(/^(\d)e\+?(-?\d+)$/, "$1×10<sup>$2</sup>") : String(tick));
+  return axis(title, {type: "log", tickvals: ticks, ticktext: words});
 }
 
 function sceneAxis(title, nticks) {
@@ -164,40 +182,88 @@ function colourBar(title) {
   };
 }
 
-/** What a plot shows, a line for each point. */
-function plotCsv(place) {
-  const quoted = (text) => `"${String(text ?? "").replace(/"/g, '""')}"`;
-  const lines = ["series,x,y,z"];
-  for (const trace of place.data) {
-    const length = Math.max(...["x", "y", "z"].map((axis) => trace[axis]?.length ?? 0));
-    for (let i = 0; i < length; ++i) {
-      lines.push([quoted(trace.name), trace.x?.[i], trace.y?.[i], trace.z?.[i]]
-          .map((cell) => cell ?? "").join(","));
-    }
-  }
-  return `${lines.join("\n")}\n`;
+/** Texts without the tags that plotly reads. */
+function untagged(text) {
+  return String(text ?? "").replace(/<br>/g, " ").replace(/<[^>]*>/g, "")
+      .replace(/&lt;/g, "<").replace(/&gt;/g, ">").replace(/&amp;/g, "&");
 }
 
-function saveAs(name, url) {
-  element("a", {href: url, download: name}).click();
-}
-
-/** The figure's data as a list and its picture, for papers and talks. */
-function saveButtons(place) {
-  const title = place.closest(".card")?.querySelector("h3")?.textContent ?? "plot";
-  const name = title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
-  const csv = element("button", {type: "button"}, "CSV");
-  csv.addEventListener("click", () => {
-    const url = URL.createObjectURL(new Blob([plotCsv(place)], {type: "text/csv"}));
-    saveAs(`${name}.csv`, url);
-    URL.revokeObjectURL(url);
+/** What the axes of a trace are called: with their units, where the plot says them. */
+function axisTitles(place, trace) {
+  const layout = trace.scene === undefined && !trace.type.endsWith("3d")
+      ? place.layout : place.layout.scene;
+  return ["x", "y", "z"].map((name) => {
+    const own = trace[`${name}axis`]?.slice(1) ?? "";
+    const title = layout?.[`${name}axis${own}`]?.title?.text ?? layout?.[`${name}axis`]?.title?.text;
+    return untagged(title) || name;
   });
-  const svg = element("button", {type: "button"}, "SVG");
+}
+
+/** The points of a trace: [x, y, z, text, below, above], the last two the ends of its interval. */
+function pointsOf(trace) {
+  if (list(trace.z).some(Array.isArray)) {
+    return trace.z.flatMap((row, r) => row.map((z, c) => [
+      trace.x?.[c] ?? c, trace.y?.[r] ?? r, z, null, null, null,
+    ]));
+  }
+  const length = Math.max(...["x", "y", "z"].map((name) => trace[name]?.length ?? 0));
+  const bars = trace.error_x ?? trace.error_y;
+  const value = (i) => trace[trace.error_x ? "x" : "y"]?.[i];
+  return Array.from({length}, (_, i) => [
+    trace.x?.[i], trace.y?.[i], trace.z?.[i], Array.isArray(trace.text) ? trace.text[i] : null,
+    bars ? value(i) - (bars.arrayminus ?? bars.array)[i] : null,
+    bars ? value(i) + bars.array[i] : null,
+  ]);
+}
+
+/** What a plot shows, a line for each point; columns without a value are left out. */
+function plotRows(place) {
+  const rows = place.data.flatMap((trace) => pointsOf(trace).map(
+      (point) => [untagged(trace.name), ...point].map(
+          (cell) => typeof cell === "string" ? untagged(cell) : cell)));
+  const titles = ["series", ...axisTitles(place, place.data[0]), "text", "low", "high"];
+  const known = titles.map((_, k) => k).filter(
+      (k) => rows.some((row) => row[k] !== "" && row[k] !== null && row[k] !== undefined));
+  return [titles, ...rows].map((row) => known.map((k) => row[k]));
+}
+
+function csvOf(rows) {
+  const cell = (x) => {
+    const text = x === null || x === undefined || Number.isNaN(x) ? "" : String(x);
+    return /[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text;
+  };
+  return rows.map((row) => `${row.map(cell).join(",")}\n`).join("");
+}
+
+function saveText(name, type, text) {
+  const url = URL.createObjectURL(new Blob([text], {type}));
+  element("a", {href: url, download: name}).click();
+  // Whoever saves it has to open it first.
+  setTimeout(() => URL.revokeObjectURL(url), 60e3);
+}
+
+/**
+ * Buttons that save a figure's data as a list and its picture, for papers and talks.
+ * @param name  what stands before it, beside its card's title; may be empty.
+ * @param rowsOf  () -> rows of cells, the first one of titles.
+ * @param svgOf  () -> SVG text, or a promise of it.
+ */
+function saveButtons(place, name, rowsOf, svgOf) {
+  const title = `${place.closest(".card")?.querySelector("h3")?.textContent ?? "plot"} ${name}`;
+  const file = title.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "");
+  const csv = element("button", {type: "button", title: "Its data as a table"}, "CSV");
+  csv.addEventListener("click", () => saveText(`${file}.csv`, "text/csv", csvOf(rowsOf())));
+  const svg = element("button", {type: "button", title: "Its picture"}, "SVG");
   svg.addEventListener("click", async () => {
-    const {clientWidth: width, clientHeight: height} = place;
-    saveAs(`${name}.svg`, await Plotly.toImage(place, {format: "svg", width, height}));
+    saveText(`${file}.svg`, "image/svg+xml", await svgOf());
   });
   return element("div", {class: "save"}, csv, svg);
+}
+
+async function plotSvg(place) {
+  const {clientWidth: width, clientHeight: height} = place;
+  const url = await Plotly.toImage(place, {format: "svg", width, height});
+  return decodeURIComponent(url.slice(url.indexOf(",") + 1));
 }
 
 const drawQueue = [];
@@ -222,7 +288,7 @@ function plot(build, options = {}) {
       return;
     }
     await Plotly.newPlot(place, figure.data, completeLayout(figure.layout), kConfig);
-    place.after(saveButtons(place));
+    place.after(saveButtons(place, "", () => plotRows(place), () => plotSvg(place)));
   });
   return place;
 }

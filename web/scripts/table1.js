@@ -141,8 +141,16 @@ function headerCell([, name, unit]) {
 function numberCell(row, [key, , , digits, intervalKey]) {
   const range = intervalKey ? interval(row[intervalKey], digits) : "";
   // A rival against itself.
-  if (range === "" || row[intervalKey][0] === row[intervalKey][1]) return number(row[key], digits);
-  return element("span", {}, number(row[key], digits), element("span", {class: "interval"}, range));
+  // Figures of others are repeated as they were printed, with five digits at most.
+  const value = digits > 4 || isCount(row[key], digits) ? number(row[key], digits)
+                                                         : measured(row[key], digits);
+  if (range === "" || row[intervalKey][0] === row[intervalKey][1]) return value;
+  return element("span", {}, value, element("span", {class: "interval"}, range));
+}
+
+/** Of rigs and failures, with four digits: they are not measured. */
+function isCount(x, digits) {
+  return Number.isInteger(x) && digits === 4;
 }
 
 /** Columns of which no row has a number are left out. */
@@ -189,7 +197,7 @@ function meanErrorCard(setting, rows) {
       }),
       layout: {
         xaxis: axis("mean error [%]", {rangemode: "tozero"}),
-        yaxis: {automargin: true, type: "category", range: [known.length - 0.5, -0.5]},
+        yaxis: namesAxis(known.length),
       },
     };
   };
@@ -199,6 +207,16 @@ function meanErrorCard(setting, rows) {
 /** More rigs than this are drawn as a box and what lies far outside it. */
 const kMostDots = 100;
 
+/** A box lying down, since names are long, with its values as dots where they are few. */
+function boxTrace(name, colour, few, values) {
+  return {
+    type: "box", orientation: "h", name: inTwoLines(name), x: values, showlegend: false,
+    boxpoints: few ? "all" : "outliers", jitter: few ? 0.6 : 0.3, pointpos: 0,
+    marker: {color: colour, size: 4, opacity: 0.6}, line: {color: colour, width: 2},
+    fillcolor: "rgba(0,0,0,0)",
+  };
+}
+
 function errorCard(setting, errors) {
   const build = () => {
     const known = errors.filter((each) => list(each.relative_error).some((x) => x > 0));
@@ -206,17 +224,13 @@ function errorCard(setting, errors) {
     if (known.length === 0) return "The errors of the single rigs were not handed over.";
     return {
       data: known.map((each) => ({
-        type: "box", name: inTwoLines(each.policy),
-        y: each.relative_error.map((x) => isNumber(x) && x > 0 ? 100 * x : null),
-        boxpoints: few ? "all" : "outliers", jitter: few ? 0.6 : 0.3, pointpos: 0,
-        showlegend: false,
-        marker: {color: policyColour(each.policy), size: 4, opacity: 0.6},
-        line: {color: policyColour(each.policy), width: 2},
-        fillcolor: "rgba(0,0,0,0)", hovertemplate: "%{y:.3g} %<extra></extra>",
+        ...boxTrace(each.policy, policyColour(each.policy), few,
+                    each.relative_error.map((x) => isNumber(x) && x > 0 ? 100 * x : null)),
+        hovertemplate: "%{x:.3g} %<extra></extra>",
       })),
       layout: {
-        xaxis: {automargin: true},
-        yaxis: logAxis("error [%], logarithmic"),
+        xaxis: logAxis("error [%], logarithmic", known.flatMap((each) => each.relative_error)),
+        yaxis: namesAxis(known.length),
       },
     };
   };
@@ -240,7 +254,7 @@ function coverageByMethodCard(setting, coverage, resolution) {
     row.append(element("div", {}, policyCell(each.policy), picture(resolution, (pen) => {
       pen.context.globalAlpha = 0.5;
       pen.dots(each.pixels, 0.8, () => colour);
-    })));
+    }, () => [["u [px]", "v [px]"], ...each.pixels], {name: each.policy})));
   }
   made.append(row);
   return made;

@@ -4,7 +4,7 @@ const kNoViews = "No view could be used, so there is nothing to draw.";
 
 /** Every corner of every view in one list. */
 function cornersOf(views) {
-  const corners = {pixels: [], residuals: [], length: [], label: []};
+  const corners = {pixels: [], residuals: [], length: [], label: [], name: []};
   for (const view of views) {
     const residuals = list(view.residuals);
     for (const [i, pixel] of list(view.pixels).entries()) {
@@ -12,6 +12,7 @@ function cornersOf(views) {
       corners.pixels.push(pixel);
       corners.residuals.push([du, dv]);
       corners.length.push(isNumber(du) && isNumber(dv) ? Math.hypot(du, dv) : null);
+      corners.name.push([view.name ?? "view", i]);
       corners.label.push(`${view.name ?? "view"}, corner ${i}\n` +
                          `residual ${number(du, 3)}, ${number(dv, 3)} px`);
     }
@@ -48,8 +49,17 @@ function cornerCard(corners, resolution, rejected) {
     pen.lines(left.flatMap(({pixel: [u, v]}) => [[[u - arm, v - arm], [u + arm, v + arm]],
                                                  [[u - arm, v + arm], [u + arm, v - arm]]]),
               kVermilion, 1.5);
-  }, hover));
+  }, () => [
+    kCornerColumns, ...cornerRows(corners),
+    ...left.map(({view, pixel, residual}) => [view, "", ...pixel, ...(residual ?? ["", ""]), 1]),
+  ], {hover}));
   return made;
+}
+
+const kCornerColumns = ["view", "corner", "u [px]", "v [px]", "du [px]", "dv [px]", "left out"];
+
+function cornerRows(corners) {
+  return corners.pixels.map((pixel, i) => [...corners.name[i], ...pixel, ...corners.residuals[i], 0]);
 }
 
 function rejectedText(corner) {
@@ -85,7 +95,9 @@ function residualVectorCard(corners, resolution, field) {
     pen.context.globalAlpha = 1;
     pen.lines(means.map((vector) => stretched(...vector)), kBlue, 3);
     pen.dots(means.map(([middle]) => middle), 1.5, () => kBlue);
-  }, {pixels: corners.pixels, textOf: (i) => corners.label[i]});
+  }, () => [kCornerColumns, ...cornerRows(corners)], {
+    hover: {pixels: corners.pixels, textOf: (i) => corners.label[i]},
+  });
 
   const slider = element("input", {type: "range", min: "0", max: "4", step: "0.02"});
   slider.value = String(Math.log10(factor));
@@ -253,7 +265,7 @@ function straightenedCard(view, resolution) {
       side(name, picture(resolution, (pen) => {
         pen.lines(list(view.lines).map((line) => line.map((i) => pixels[i])), kSkyBlue, 1.5);
         pen.dots(pixels, 2, () => kBlue);
-      }));
+      }, () => [["u [px]", "v [px]"], ...pixels], {name}));
     }
   }
   made.append(row, element("p", {class: "note"}, view.name ?? ""));

@@ -10,7 +10,17 @@ function isNumber(x) {
 function number(x, digits = 4) {
   if (!isNumber(x)) return kNothing;
   if (Number.isInteger(x) && Math.abs(x) < 1e9) return String(x);
+  if (Math.abs(x) >= 1e7) return x.toExponential(digits - 1);
   return String(Number(x.toPrecision(digits)));
+}
+
+/** With exactly so many significant digits, zeros as well: what stands below each other lines up. */
+function measured(x, digits = 3) {
+  if (!isNumber(x)) return kNothing;
+  if (x === 0) return "0";
+  const power = Math.floor(Math.log10(Math.abs(x)));
+  if (power >= 7 || power < -6) return x.toExponential(digits - 1);
+  return power >= digits ? x.toFixed(0) : x.toPrecision(digits);
 }
 
 /** A value with as many decimals as its sigma can bear: two digits of the sigma. */
@@ -23,7 +33,7 @@ function withSigma(value, sigma) {
 
 function interval(pair, digits = 3) {
   if (!Array.isArray(pair) || !pair.every(isNumber)) return "";
-  return `${number(pair[0], digits)} to ${number(pair[1], digits)}`;
+  return `${measured(pair[0], digits)} to ${measured(pair[1], digits)}`;
 }
 
 function counted(n, one, many) {

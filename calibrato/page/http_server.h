@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "calibrato/guide/http_message.h"
+#include "calibrato/page/http_message.h"
 
 namespace calibrato {
 
@@ -24,8 +24,9 @@ class HttpServer {
 
   /// @param host  A numeric IPv4 address of this machine: "127.0.0.1", or "0.0.0.0" for all.
   /// @param port  1 to 65535, or 0 for any that is free.
+  /// @param remedy  What to try if it can't be had: which options choose it.
   /// @throws InputError if it can't be had.
-  HttpServer(const std::string& host, int port, Handler handler);
+  HttpServer(const std::string& host, int port, Handler handler, const std::string& remedy);
   /// Requests that are being answered are waited for.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;

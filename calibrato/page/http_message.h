@@ -37,6 +37,9 @@ struct HttpResponse {
   std::map<std::string, std::string> headers;  ///< Beside those that every answer has.
 };
 
+/// An answer of one line of plain text, for what is not served.
+[[nodiscard]] HttpResponse Refusal(int status, const std::string& words);
+
 /// The answer's bytes. Every one forbids caching, framing, and whatever comes from elsewhere.
 [[nodiscard]] std::string HttpText(const HttpResponse& response);
 

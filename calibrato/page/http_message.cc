@@ -1,4 +1,4 @@
-#include "calibrato/guide/http_message.h"
+#include "calibrato/page/http_message.h"
 
 #include <algorithm>
 #include <cctype>
@@ -119,6 +119,13 @@ std::optional<HttpRequest> ParseHttpRequest(std::string_view head) {
   request.has_body = (length != request.headers.end() && length->second != "0") ||
                      request.headers.count("transfer-encoding") > 0;
   return request;
+}
+
+HttpResponse Refusal(int status, const std::string& words) {
+  HttpResponse response;
+  response.status = status;
+  response.body = words + "\n";
+  return response;
 }
 
 std::string HttpText(const HttpResponse& response) {

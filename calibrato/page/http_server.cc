@@ -1,4 +1,4 @@
-#include "calibrato/guide/http_server.h"
+#include "calibrato/page/http_server.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -83,23 +83,24 @@ void Close(int connection) {
   close(connection);
 }
 
-[[noreturn]] void Fail(const std::string& host, int port, const std::string& why) {
-  throw InputError({"cannot open the page", host + " port " + std::to_string(port), why,
-                    "choose another --port, or a --host that is an address of this machine"});
+[[noreturn]] void Fail(const std::string& host, int port, const std::string& why,
+                       const std::string& remedy) {
+  throw InputError({"cannot open the page", host + " port " + std::to_string(port), why, remedy});
 }
 
 }  // namespace
 
-HttpServer::HttpServer(const std::string& host, int port, Handler handler)
+HttpServer::HttpServer(const std::string& host, int port, Handler handler,
+                       const std::string& remedy)
     : handler_(std::move(handler)) {
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<uint16_t>(port));
   if (inet_pton(AF_INET, host.c_str(), &address.sin_addr) != 1) {
-    Fail(host, port, "not an address as 192.168.1.5");
+    Fail(host, port, "not an address as 192.168.1.5", remedy);
   }
   socket_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (socket_ < 0) Fail(host, port, std::generic_category().message(errno));
+  if (socket_ < 0) Fail(host, port, std::generic_category().message(errno), remedy);
   const int yes = 1;
   setsockopt(socket_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   socklen_t size = sizeof address;
@@ -108,7 +109,7 @@ HttpServer::HttpServer(const std::string& host, int port, Handler handler)
       getsockname(socket_, generic, &size) != 0) {
     const int error = errno;
     close(socket_);
-    Fail(host, port, std::generic_category().message(error));
+    Fail(host, port, std::generic_category().message(error), remedy);
   }
   port_ = ntohs(address.sin_port);
   thread_ = std::thread([this] { Accept(); });
@@ -152,20 +153,15 @@ void HttpServer::Answer(int connection) const {
     const std::optional<HttpRequest> request = ParseHttpRequest(*head);
     HttpResponse response;
     if (!request) {
-      response.status = 400;
-      response.body = "not a request that this page knows\n";
+      response = Refusal(400, "not a request that this page knows");
     } else if (request->has_body) {
-      response.status = 413;
-      response.body = "this page takes nothing\n";
+      response = Refusal(413, "this page takes nothing");
     } else {
       response = handler_(*request);
     }
     SendAll(connection, HttpText(response));
   } catch (const std::exception& error) {
-    HttpResponse failed;
-    failed.status = 500;
-    failed.body = std::string(error.what()) + "\n";
-    SendAll(connection, HttpText(failed));
+    SendAll(connection, HttpText(Refusal(500, error.what())));
   }
 }
 

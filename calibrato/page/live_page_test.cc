@@ -1,4 +1,4 @@
-#include "calibrato/cli/live_page.h"
+#include "calibrato/page/live_page.h"
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -40,30 +40,38 @@ bool Has(const std::string& text, const std::string& part) {
 
 TEST(LivePage, AnswersWithWhatThereIsNow) {
   std::string content = "first";
-  LivePage page(0, {[&] { return "<p>" + content + "</p>"; }, [] { return std::string("{}\n"); }});
+  LivePage page(0, "--live",
+                {[&] { return "<p>" + content + "</p>"; }, [] { return std::string("{}\n"); }});
   EXPECT_GT(page.port(), 0);
   EXPECT_EQ(page.address(), "http://127.0.0.1:" + std::to_string(page.port()) + "/");
-  const std::string first = Ask(page.port(), "GET / HTTP/1.1\r\nHost: a\r\n\r\n");
+  const std::string first = Ask(page.port(), "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
   EXPECT_TRUE(Has(first, "HTTP/1.1 200 OK\r\n"));
   EXPECT_TRUE(Has(first, "Content-Length: 12\r\n"));
+  EXPECT_TRUE(Has(first, "Refresh: 5\r\n"));
   EXPECT_TRUE(first.ends_with("\r\n\r\n<p>first</p>"));
   content = std::string(3'000'000, 'x');  // More than a socket takes at once.
-  EXPECT_GT(Ask(page.port(), "GET / HTTP/1.1\r\n\r\n").size(), content.size());
-  EXPECT_TRUE(Ask(page.port(), "GET /data HTTP/1.1\r\n\r\n").ends_with("\r\n\r\n{}\n"));
+  EXPECT_GT(Ask(page.port(), "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n").size(), content.size());
+  EXPECT_TRUE(
+      Ask(page.port(), "GET /data HTTP/1.1\r\nHost: localhost\r\n\r\n").ends_with("\r\n\r\n{}\n"));
 }
 
 TEST(LivePage, SurvivesWhatItDoesNotUnderstand) {
-  LivePage page(0, {[]() -> std::string { throw std::runtime_error("not yet"); },
-                    [] { return std::string("[]"); }});
-  EXPECT_TRUE(Has(Ask(page.port(), "GET / HTTP/1.1\r\n\r\n"), "500 Internal"));
-  EXPECT_TRUE(Has(Ask(page.port(), "GET /../secret HTTP/1.1\r\n\r\n"), "404 Not Found"));
-  EXPECT_TRUE(Has(Ask(page.port(), "DELETE / HTTP/1.1\r\n\r\n"), "404 Not Found"));
-  EXPECT_EQ(Ask(page.port(), std::string(20000, 'a')), "");
-  EXPECT_TRUE(Ask(page.port(), "GET /data HTTP/1.1\r\n\r\n").ends_with("[]"));
+  LivePage page(0, "--live",
+                {[]() -> std::string { throw std::runtime_error("not yet"); },
+                 [] { return std::string("[]"); }});
+  EXPECT_TRUE(Has(Ask(page.port(), "GET / HTTP/1.1\r\nHost: localhost\r\n\r\n"), "500 Internal"));
+  EXPECT_TRUE(
+      Has(Ask(page.port(), "GET /../secret HTTP/1.1\r\nHost: localhost\r\n\r\n"), "404 Not Found"));
+  EXPECT_TRUE(Has(Ask(page.port(), "DELETE / HTTP/1.1\r\nHost: localhost\r\n\r\n"), "405 Method"));
+  EXPECT_TRUE(Has(Ask(page.port(), std::string(20000, 'a')), "400 Bad Request"));
+  EXPECT_TRUE(Has(Ask(page.port(), "GET /data HTTP/1.1\r\n\r\n"), "403 Forbidden"));
+  EXPECT_TRUE(
+      Has(Ask(page.port(), "GET /data HTTP/1.1\r\nHost: evil.example\r\n\r\n"), "403 Forbidden"));
+  EXPECT_TRUE(Ask(page.port(), "GET /data HTTP/1.1\r\nHost: localhost\r\n\r\n").ends_with("[]"));
 }
 
 TEST(LivePage, ListensOnTheLoopbackInterfaceAlone) {
-  const LivePage page(0, {[] { return std::string(); }, [] { return std::string(); }});
+  const LivePage page(0, "--live", {[] { return std::string(); }, [] { return std::string(); }});
   char port[8];
   std::snprintf(port, sizeof port, ":%04X", static_cast<unsigned>(page.port()));
   std::ifstream sockets("/proc/net/tcp");
@@ -80,9 +88,9 @@ TEST(LivePage, ListensOnTheLoopbackInterfaceAlone) {
 
 TEST(LivePage, NamesAPortThatIsTaken) {
   const LivePage::Content content{[] { return std::string(); }, [] { return std::string(); }};
-  const LivePage page(0, content);
+  const LivePage page(0, "--live", content);
   try {
-    const LivePage second(page.port(), content);
+    const LivePage second(page.port(), "--live", content);
     ADD_FAILURE() << "two pages on one port";
   } catch (const InputError& error) {
     EXPECT_TRUE(Has(error.what(), "port " + std::to_string(page.port())));

@@ -1,4 +1,4 @@
-#include "calibrato/guide/http_message.h"
+#include "calibrato/page/http_message.h"
 
 #include <gtest/gtest.h>
 
