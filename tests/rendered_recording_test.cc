@@ -111,7 +111,7 @@ TEST(RenderedRecording, CornerNoiseIsWhatTheFittedModelPredicts) {
   rig.image_disturbances.defocus_px = 0.5;
   rig.image_disturbances.read_noise = 1.5;
   rig.image_disturbances.shot_noise = 0.02;
-  const CornerNoise fitted{.stddev_px = 0.0054, .blur_factor = 0.0020, .blur_knee_px = 4.6};
+  const CornerNoise fitted{.stddev_px = 0.0054, .blur_factor = 0.00205, .blur_knee_px = 4.7};
   const CarrierPath path = Executed(rig);
   const RenderedCamera camera(rig);
   const CameraModel& lens = rig.cameras[0].model;

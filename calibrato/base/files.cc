@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
 #include <cerrno>
 #include <cstdlib>
@@ -15,168 +14,19 @@
 #include <system_error>
 #include <utility>
 
+#include "calibrato/base/file_descriptor.h"
+#include "calibrato/base/file_failure.h"
 #include "calibrato/base/input_error.h"
+#include "calibrato/base/temporary_file.h"
 
 namespace calibrato {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Explanation {
-  std::string why;
-  std::string remedy;
-};
-
-Explanation Explain(int error) {
-  switch (error) {
-    case ENOSPC:
-      return {"the disk is full", "free some space or choose another disk"};
-    case EDQUOT:
-      return {"your share of the disk is used up", "free some space or choose another disk"};
-    case EFBIG:
-      return {"the file would exceed the size limit", "raise the limit with 'ulimit -f'"};
-    case EACCES:
-    case EPERM:
-      return {"no permission", "choose another path or change its permissions"};
-    case EROFS:
-      return {"the file system is read-only", "choose a path that can be written"};
-    case ENOENT:
-      return {"no such file or folder", "check the spelling of the path"};
-    case ENOTDIR:
-      return {"a part of the path is a file, not a folder", "check the spelling of the path"};
-    case EISDIR:
-      return {"it is a folder", "name a file"};
-    case ENAMETOOLONG:
-      return {"the name is too long", "choose a shorter one"};
-    case ELOOP:
-      return {"its symbolic links lead in a circle", "mend the links"};
-    case EMFILE:
-    case ENFILE:
-      return {"too many files are open", "raise the limit with 'ulimit -n'"};
-    case EIO:
-      return {"the disk reports an error", "copy the data to another disk"};
-    default:
-      return {std::generic_category().message(error), "choose another path"};
-  }
-}
-
-[[noreturn]] void FailFile(const std::string& what, const std::string& path, int error) {
-  const Explanation explanation = Explain(error);
-  throw InputError({what, path, explanation.why, explanation.remedy});
-}
-
-class FileDescriptor {
- public:
-  explicit FileDescriptor(int fd) : fd_(fd) {}
-  ~FileDescriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  FileDescriptor(const FileDescriptor&) = delete;
-  FileDescriptor& operator=(const FileDescriptor&) = delete;
-  int get() const { return fd_; }
-  /// Network file systems report a full disk only here. @return 0 or an errno.
-  int Close() { return close(std::exchange(fd_, -1)) == 0 ? 0 : errno; }
-
- private:
-  int fd_;
-};
-
-int WriteAll(int fd, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = write(fd, content.data(), content.size());
-    if (written < 0) {
-      if (errno == EINTR) continue;
-      return errno;
-    }
-    content.remove_prefix(static_cast<size_t>(written));
-  }
-  return 0;
-}
-
-// Some file systems have no sync; that is no reason to lose the result.
-int SyncIfSupported(int fd) {
-  if (fsync(fd) == 0 || errno == EINVAL || errno == ENOTSUP || errno == ENOSYS) return 0;
-  return errno;
-}
-
-// A new name is on disk only when its folder is. The content is there already, so a failure here is
-// not worth an error.
-void SyncFolder(const fs::path& folder) {
-  const FileDescriptor fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (fd.get() >= 0) static_cast<void>(SyncIfSupported(fd.get()));
-}
-
 fs::path FolderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
-
-// Where a rename to `path` should go: symbolic links are followed, so that they stay links; folders
-// and devices (/dev/null) are refused, since a rename would replace them.
-fs::path RenameTarget(const std::string& path) {
-  struct stat status {};
-  if (stat(path.c_str(), &status) != 0) {
-    if (errno != ENOENT) FailFile("cannot write file", path, errno);
-    return path;
-  }
-  if (S_ISDIR(status.st_mode)) FailFile("cannot write file", path, EISDIR);
-  if (!S_ISREG(status.st_mode)) {
-    throw InputError({"cannot write file", path, "it is a device or a pipe", "name a file"});
-  }
-  std::error_code error;
-  fs::path target = fs::canonical(path, error);
-  if (error) FailFile("cannot write file", path, error.value());
-  return target;
-}
-
-// A written and synced file under a temporary name beside its target; gone unless renamed.
-class TemporaryFile {
- public:
-  TemporaryFile(const std::string& path, std::string_view content)
-      : path_(path), target_(RenameTarget(path)) {
-    static std::atomic<unsigned> counter{0};
-    constexpr int kMaxTries = 1000;
-    FileDescriptor fd = [&] {
-      for (int i = 0;; ++i) {
-        temporary_ = target_;
-        temporary_ += ".tmp-" + std::to_string(getpid()) + "-" + std::to_string(counter++);
-        const int fd = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (fd >= 0) return FileDescriptor(fd);
-        if (errno != EEXIST || i == kMaxTries) FailFile("cannot write file", path, errno);
-      }
-    }();
-    int error = WriteAll(fd.get(), content);
-    if (error == 0) error = SyncIfSupported(fd.get());
-    const int close_error = fd.Close();
-    if (error == 0) error = close_error;
-    if (error != 0) {
-      unlink(temporary_.c_str());
-      FailFile("cannot write file", path, error);
-    }
-  }
-  ~TemporaryFile() {
-    if (!temporary_.empty()) unlink(temporary_.c_str());
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  TemporaryFile(TemporaryFile&& other) noexcept
-      : path_(std::move(other.path_)),
-        target_(std::move(other.target_)),
-        temporary_(std::exchange(other.temporary_, fs::path())) {}
-  TemporaryFile& operator=(TemporaryFile&&) = delete;
-
-  void Rename() {
-    if (rename(temporary_.c_str(), target_.c_str()) != 0) {
-      FailFile("cannot write file", path_, errno);
-    }
-    temporary_.clear();
-    SyncFolder(FolderOf(target_));
-  }
-
- private:
-  std::string path_;  // as the person wrote it, for errors
-  fs::path target_;
-  fs::path temporary_;
-};
 
 // Folders made on the way to a result; gone again, if empty, unless kept.
 class MadeFolders {

@@ -20,8 +20,11 @@ double Distance(const ViewParameters& a, const ViewParameters& b) {
          std::abs(a.skew - b.skew);
 }
 
-// Mean way of the corners that both views hold [px]. Both lists of numbers ascend.
-std::optional<double> MeanWay(const BoardView& a, const BoardView& b) {
+// Mean way of the corners that both views hold [px]. Both lists of numbers ascend. Infinite as soon
+// as it is known not to be below `bound`: of views that differ the first corners tell, so that
+// comparing each with each stays cheap.
+std::optional<double> MeanWay(const BoardView& a, const BoardView& b, double bound = kInfinity) {
+  const double enough = bound * static_cast<double>(std::min(a.num_corners(), b.num_corners()));
   double sum = 0.0;
   int count = 0;
   size_t i = 0;
@@ -36,6 +39,7 @@ std::optional<double> MeanWay(const BoardView& a, const BoardView& b) {
               b.pixels.col(static_cast<Eigen::Index>(j++)))
                  .norm();
       ++count;
+      if (sum >= enough) return kInfinity;
     }
   }
   if (count == 0) return std::nullopt;
@@ -118,7 +122,7 @@ std::vector<size_t> SelectDistinct(const std::vector<BoardView>& views, double l
   std::vector<size_t> kept;
   for (size_t v = 0; v < views.size(); ++v) {
     const bool is_distinct = std::all_of(kept.begin(), kept.end(), [&](size_t other) {
-      const auto way = MeanWay(views[other], views[v]);
+      const auto way = MeanWay(views[other], views[v], least_way_px);
       return !way || *way >= least_way_px;
     });
     if (is_distinct) kept.push_back(v);

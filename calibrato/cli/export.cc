@@ -7,11 +7,11 @@
 #include <variant>
 #include <vector>
 
-#include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/cli/arm_argument.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/export_result.h"
+#include "calibrato/cli/output_files.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/evaluation/contestant.h"
 #include "calibrato/evaluation/joint_drawing.h"
@@ -77,6 +77,9 @@ std::string DryRunHtml(const Value& summary, const TimedMotion& timed, const Rig
 
 ExitCode ExportMotion(const Options& options, const GlobalOptions& global) {
   const RobotFormat format = RobotFormatFromName(options.format);
+  CheckOutputFiles(
+      {{"--out", options.out}, {"--html", options.html}},
+      {{"the motion", options.subject}, {"--rig", options.rig}, {"--arm", options.arm}});
   const std::optional<Arm> arm = ReadArmArgument(options.arm);
   if (arm && format == RobotFormat::kFrankaCsv) {
     throw InputError({"no franka-csv for the arm " + arm->name, options.arm,
@@ -103,13 +106,17 @@ ExitCode ExportMotion(const Options& options, const GlobalOptions& global) {
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale);
   if (arm) summary.Set("arm", arm->name);
-  const std::string html = options.html.empty() ? "" : DryRunHtml(summary, timed, rig, arm);
-  WriteFileAtomically(options.out, RobotFile(timed, format, arm ? NamesOf(*arm) : PandaNames()));
-  if (!html.empty()) WriteFileAtomically(options.html, html);
+  std::vector<NewFile> files = {
+      {options.out, RobotFile(timed, format, arm ? NamesOf(*arm) : PandaNames())}};
+  if (!options.html.empty()) {
+    files.push_back({options.html, DryRunHtml(summary, timed, rig, arm)});
+  }
+  WriteFilesTogether(files);
   if (global.json) {
     std::fputs(ToJson(summary).c_str(), stdout);
   } else if (!global.quiet) {
-    std::printf("%zu loops in %.2f s, scale %.3f\n%s\n", timed.motion.loops.size(),
+    const size_t num_loops = timed.motion.loops.size();
+    std::printf("%zu %s in %.2f s, scale %.3f\n%s\n", num_loops, num_loops == 1 ? "loop" : "loops",
                 timed.duration_s(), timed.scale, options.out.c_str());
   }
   return kDone;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 
 #include "calibrato/base/value.h"
@@ -105,6 +106,48 @@ TEST(ExportCommand, DrawsADryRun) {
                                    "--html", page, "--out", scratch.Path("ros")});
   EXPECT_EQ(folder.exit_code, 2);
   EXPECT_NE(folder.err.find("--html has no use here"), std::string::npos) << folder.err;
+}
+
+TEST(ExportCommand, WritesNothingWhereOneOfItsFilesCannotBe) {
+  const ScratchFolder scratch;
+  const std::string motion = scratch.Write("motion.yaml", MotionYaml(0.05));
+  const std::string rig = scratch.Write("rig.yaml", RigYaml());
+  const auto before = FilesBelow(scratch.Path(""));
+  const auto refused = [&](const std::string& out, const std::string& html,
+                           const std::string& why) {
+    const Ended ended = RunProgram(
+        {"export", motion, "--rig", rig, "--format", "joint-csv", "--out", out, "--html", html});
+    EXPECT_EQ(ended.exit_code, 2) << why;
+    EXPECT_NE(ended.err.find(why), std::string::npos) << ended.err;
+    EXPECT_EQ(FilesBelow(scratch.Path("")), before);
+  };
+  const std::string out = scratch.Path("joints.csv");
+  refused(out, out, "it is that of --out and that of --html");
+  refused(motion, scratch.Path("page.html"), "it is that of the motion and that of --out");
+  refused(out, rig, "it is that of --rig and that of --html");
+  refused(out, scratch.Path("nowhere/page.html"), "cannot write file");
+}
+
+// What two files can't have is told before the work; what the disk refuses, after it.
+TEST(ExportCommand, LeavesNothingIfThePageDoesNotFitOnTheDisk) {
+  const ScratchFolder scratch;
+  const std::string motion = scratch.Write("motion.yaml", MotionYaml(0.05));
+  const auto before = FilesBelow(scratch.Path(""));
+  const Arguments arguments = {"export",   motion,
+                               "--format", "moveit",
+                               "--out",    scratch.Path("trajectory.yaml"),
+                               "--html",   scratch.Path("page.html")};
+  const Ended whole = RunProgram(arguments);
+  ASSERT_EQ(whole.exit_code, 0) << whole.err;
+  EXPECT_NE(whole.out.find("1 loop in"), std::string::npos) << whole.out;
+  // The trajectory fits, the page is one byte too large.
+  const auto size = ContentOf(scratch.Path("page.html")).size();
+  ASSERT_GT(size, ContentOf(scratch.Path("trajectory.yaml")).size());
+  std::filesystem::remove(scratch.Path("page.html"));
+  std::filesystem::remove(scratch.Path("trajectory.yaml"));
+  const Ended full = RunProgram(arguments, size - 1);
+  EXPECT_EQ(full.exit_code, 2);
+  EXPECT_EQ(FilesBelow(scratch.Path("")), before);
 }
 
 TEST(ExportCommand, RefusesAMotionThatTheArmCannotMakeAndUnknownFormats) {

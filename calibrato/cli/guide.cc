@@ -148,12 +148,23 @@ std::pair<std::string, ExitCode> CalibrateRecording(const Options& options, bool
 
 // A policy's file of weights is for those who plan anew; what it settled on stands beside it.
 Motion MotionOfPolicy(const std::string& folder, std::vector<std::string>* warnings) {
+  constexpr double kShortest = 0.5;   // [s] Nobody could follow ...
+  constexpr double kLongest = 120.0;  // ... or would.
   const std::string path = folder + "/motion.yaml";
-  if (!fs::exists(path)) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) {
     throw InputError({"no policy", folder, "it has no motion.yaml",
                       "give a folder policy/ as `calibrato learn` writes it"});
   }
-  return MotionFromValue(ReadYaml(path), warnings);
+  Motion motion = MotionFromValue(ReadYaml(path), warnings);
+  for (size_t i = 0; i < motion.loops.size(); ++i) {
+    const double duration_s = motion.loops[i].duration_s;
+    if (duration_s >= kShortest && duration_s <= kLongest) continue;
+    throw InputError({"loop " + std::to_string(i + 1) + " takes " + FormatNumber(duration_s) + " s",
+                      path, "a hand follows loops of 0.5 to 120 s",
+                      "change duration_s there, or leave --policy out"});
+  }
+  return motion;
 }
 
 ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
@@ -264,6 +275,7 @@ ExitCode RunGuide(const Options& options, const GlobalOptions& global) {
     }
     Capture(*source, &session, &recording, &latest, [] { return InterruptRequested().load(); });
   }
+  source.reset();  // Whoever wants the camera may have it.
 
   phase.Set("calibrating", "", "");
   ExitCode code = kNotTrusted;

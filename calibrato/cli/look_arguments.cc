@@ -11,6 +11,7 @@
 #include "calibrato/cli/number_range.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/detection/detect.h"
+#include "calibrato/geometry/rpy.h"
 #include "calibrato/motion/panda.h"
 #include "calibrato/motion/paper_scene.h"
 #include "calibrato/recording/photo.h"
@@ -83,7 +84,9 @@ void AddLookArguments(CLI::App& app, LookArguments* arguments) {
                  "T_w_g");
   app.add_option(
          "--photo-joints", arguments->joints,
-         "The arm's joint angles when it was taken, one a joint [rad] (those of the start pose)")
+         "The arm's joint angles when it was taken, one a joint [rad] (of the start pose: "
+         "start_joints_rad of --arm; the Panda's hand at 0.4 0.3 0.47 m from its base, roll, "
+         "pitch, yaw 1.5708 0.8 1.5708)")
       ->expected(6, 7)
       ->delimiter(',');
   app.add_option("--cameras", arguments->cameras,
@@ -137,30 +140,46 @@ SeenRig LookByPhoto(const LookArguments& arguments, Rig rig, const Arm* arm) {
     PrintWarnings({"camera and photo do not agree, " + arguments.photo + ": corners are off by " +
                    text + " px; the board may stand elsewhere than planned for"});
   }
-  return {WithBoardAsSeen(std::move(rig), T_b_e, look->T_c0_g), *std::move(look)};
+  SeenRig seen;
+  seen.rig = WithBoardAsSeen(std::move(rig), T_b_e, look->T_c0_g);
+  seen.look = *std::move(look);
+  seen.T_b_e = T_b_e;
+  seen.is_from_start_pose = arguments.joints.empty();
+  return seen;
 }
 
-std::string Describe(const OneLook& look, const Rig& rig) {
+std::string Describe(const SeenRig& seen) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
+  const OneLook& look = seen.look;
   char text[200];
   std::snprintf(text, sizeof(text),
                 "board: %.3f m away, %.1f deg from facing the camera (%d corners, rms %.2f px: "
                 "+- %.1f mm, %.2f deg)",
-                Distance(look, rig), kDegrees * Tilt(look, rig), look.num_corners,
+                Distance(look, seen.rig), kDegrees * Tilt(look, seen.rig), look.num_corners,
                 look.reprojection_rms_px, 1e3 * look.translation_sigma_m,
                 kDegrees * look.rotation_sigma_rad);
-  return text;
+  std::string described = text;
+  if (!seen.is_from_start_pose) return described;
+  const Eigen::Vector3d& xyz = seen.T_b_e.t;
+  const Eigen::Vector3d rpy = RpyFromRotation(seen.T_b_e.R);
+  std::snprintf(text, sizeof(text),
+                "\nphoto: from the start pose, the controlled frame at %.3f %.3f %.3f m, rpy %.3f "
+                "%.3f %.3f rad (from elsewhere: --photo-joints)",
+                xyz.x(), xyz.y(), xyz.z(), rpy.x(), rpy.y(), rpy.z());
+  return described + text;
 }
 
-Value ToValue(const OneLook& look, const Rig& rig) {
+Value ToValue(const SeenRig& seen) {
+  const OneLook& look = seen.look;
   return Value::Object()
-      .Set("distance_m", Distance(look, rig))
-      .Set("tilt_rad", Tilt(look, rig))
+      .Set("distance_m", Distance(look, seen.rig))
+      .Set("tilt_rad", Tilt(look, seen.rig))
       .Set("num_corners", look.num_corners)
       .Set("reprojection_rms_px", look.reprojection_rms_px)
       .Set("translation_sigma_m", look.translation_sigma_m)
       .Set("rotation_sigma_rad", look.rotation_sigma_rad)
-      .Set("T_w_g", ToValue(rig.T_w_g));
+      .Set("T_w_g", ToValue(seen.rig.T_w_g))
+      .Set("T_b_e", ToValue(seen.T_b_e));
 }
 
 }  // namespace calibrato

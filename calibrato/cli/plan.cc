@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "calibrato/base/files.h"
 #include "calibrato/base/input_error.h"
 #include "calibrato/cli/arm_argument.h"
 #include "calibrato/cli/command.h"
 #include "calibrato/cli/design_arguments.h"
 #include "calibrato/cli/look_arguments.h"
+#include "calibrato/cli/output_files.h"
 #include "calibrato/cli/parse.h"
 #include "calibrato/evaluation/closed_loop.h"
 #include "calibrato/learning/plan_by_method.h"
@@ -69,6 +69,9 @@ Value Expectation(Task task, const Rig& rig, const Motion& motion) {
 // The same motion shrunk, and repeated: what a shorter or a longer one would give.
 Motion Shrunk(const MotionDesignProblem& problem, const Motion& motion, double share) {
   MotionDesignProblem smaller = problem;
+  smaller.num_loops = static_cast<int>(motion.loops.size());
+  smaller.num_fixed_loops = 0;
+  smaller.base_pose = motion.base_pose;
   smaller.max_path_m = share * PathLength(motion);
   return FitToBudget(smaller, motion).value_or(motion);
 }
@@ -87,21 +90,32 @@ struct PlannedBefore {
   std::optional<std::string> task;  // That it was learned for.
 };
 
-PlannedBefore ReadPolicyMotion(const std::string& folder) {
+// Of a policy's folder; empty if there is none, or no folder.
+std::string MotionPath(const std::string& folder) {
   namespace fs = std::filesystem;
+  if (folder.empty()) return "";
   for (const fs::path& path : {fs::path(folder), fs::path(folder) / "policy"}) {
-    if (!fs::exists(path / "motion.yaml")) continue;
-    PlannedBefore before{ReadMotion((path / "motion.yaml").string()), {}};
-    if (fs::exists(path / "policy.yaml")) {
-      const Value header = ReadYaml((path / "policy.yaml").string());
-      if (const Value* task = header.Find("task")) before.task = task->AsString();
-    } else if (before.motion.provenance.IsObject()) {
-      if (const Value* task = before.motion.provenance.Find("task")) before.task = task->AsString();
-    }
-    return before;
+    if (fs::exists(path / "motion.yaml")) return (path / "motion.yaml").string();
   }
-  throw InputError({"no policy", folder, "neither motion.yaml nor policy/motion.yaml is there",
-                    "give the folder that calibrato learn wrote, once it has finished"});
+  return "";
+}
+
+PlannedBefore ReadPolicyMotion(const std::string& folder) {
+  const std::string motion_path = MotionPath(folder);
+  if (motion_path.empty()) {
+    throw InputError({"no policy", folder, "neither motion.yaml nor policy/motion.yaml is there",
+                      "give the folder that calibrato learn wrote, once it has finished"});
+  }
+  PlannedBefore before{ReadMotion(motion_path), {}};
+  const std::filesystem::path header_path =
+      std::filesystem::path(motion_path).replace_filename("policy.yaml");
+  if (std::filesystem::exists(header_path)) {
+    const Value header = ReadYaml(header_path.string());
+    if (const Value* task = header.Find("task")) before.task = task->AsString();
+  } else if (before.motion.provenance.IsObject()) {
+    if (const Value* task = before.motion.provenance.Find("task")) before.task = task->AsString();
+  }
+  return before;
 }
 
 // The design keeps to a sphere and above a height; of an arm whose reach is not known in closed
@@ -168,18 +182,31 @@ void CheckExecuted(const Options& options, Motion motion, Carrier carrier, const
   }
 }
 
-// As the carrier, or the arm that somebody described, makes it.
-Motion Executed(Motion motion, Carrier carrier, const std::optional<Arm>& arm, const Rig& rig) {
+// A motion with the durations that it takes.
+struct ExecutedMotion {
+  Motion motion;
+  double scale = 1.0;  // What it was made smaller by.
+};
+
+// As the carrier, or the arm that somebody described, makes it. @throws InputError if it can't.
+ExecutedMotion Executed(Motion motion, Carrier carrier, const std::optional<Arm>& arm,
+                        const Rig& rig) {
   motion.carrier = carrier;
   TimedMotion timed = arm ? PlanScaledToFit(*arm, motion, rig) : PlanScaledToFit(motion, rig);
-  if (arm && timed.scale < 1.0) {
-    std::fprintf(stderr, "note: made smaller to fit the arm %s: %.3f of what was designed\n",
-                 arm->name.c_str(), timed.scale);
-  }
   for (size_t i = 0; i < timed.motion.loops.size(); ++i) {
     timed.motion.loops[i].duration_s = timed.loop_duration_s[i];
   }
-  return timed.motion;
+  return {std::move(timed.motion), timed.scale};
+}
+
+// The same at half its path. @return nothing if the carrier can't make that
+std::optional<Motion> HalfOf(const MotionDesignProblem& problem, const Motion& motion,
+                             Carrier carrier, const std::optional<Arm>& arm, const Rig& rig) {
+  try {
+    return Executed(Shrunk(problem, motion, 0.5), carrier, arm, rig).motion;
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 double Duration(const Motion& motion) {
@@ -258,6 +285,12 @@ int64_t PlanRest(const Options& options, MotionDesignProblem problem, Motion* mo
 
 ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   CheckUse(options);
+  CheckOutputFiles({{"--out", options.out}, {"--rig-out", options.look.rig_out}},
+                   {{"--rig", options.rig},
+                    {"--arm", options.arm},
+                    {"--policy", MotionPath(options.policy)},
+                    {"--photo", options.look.photo},
+                    {"--cameras", options.look.cameras}});
   if (std::filesystem::exists(options.out) && !global.force) {
     throw InputError({"cannot write the motion", options.out, "it exists", "add --force"});
   }
@@ -272,11 +305,10 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   const std::optional<Arm> arm = ReadArmArgument(options.arm);
   const Rng rng(global.seed);
   Rig nominal = ReadRig(options.rig);
-  std::optional<OneLook> look;
+  std::optional<SeenRig> seen;
   if (!options.look.photo.empty()) {
-    SeenRig seen = LookByPhoto(options.look, std::move(nominal), arm ? &*arm : nullptr);
-    nominal = std::move(seen.rig);
-    look = seen.look;
+    seen = LookByPhoto(options.look, std::move(nominal), arm ? &*arm : nullptr);
+    nominal = seen->rig;
   }
   std::vector<Rig> rigs = {AsEstimated(nominal)};
   if (!options.rigs.empty()) {
@@ -293,10 +325,10 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
   if (before) {
     before->motion.base_pose = BasePoseBeforeBoard(rig, before->motion.base_pose);
     if (options.executed > 0) CheckExecuted(options, before->motion, carrier, rig);
-    motion = Executed(before->motion, carrier, arm, rig);
+    motion = Executed(before->motion, carrier, arm, rig).motion;
     if (options.executed > 0) {
       num_evaluations = PlanRest(options, problem, &motion);
-      motion = Executed(std::move(motion), carrier, arm, rig);
+      motion = Executed(std::move(motion), carrier, arm, rig).motion;
     }
   } else {
     std::optional<MotionDesign> design =
@@ -307,7 +339,12 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
                         "allow a longer path or more time, or move the board"});
     }
     num_evaluations = design->num_information_evaluations;
-    motion = Executed(std::move(design->motion), carrier, arm, rig);
+    ExecutedMotion executed = Executed(std::move(design->motion), carrier, arm, rig);
+    motion = std::move(executed.motion);
+    if (arm && executed.scale < 1.0) {
+      std::fprintf(stderr, "note: made smaller to fit the arm %s: %.3f of what was designed\n",
+                   arm->name.c_str(), executed.scale);
+    }
     motion.provenance = Value::Object()
                             .Set("method", options.method)
                             .Set("task", task_name)
@@ -318,10 +355,11 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
     if (arm) motion.provenance.Set("arm", arm->name);
   }
   const Value expected = Expectation(task, rig, motion);
-  WriteFileAtomically(options.out, ToYaml(ToValue(motion)));
+  std::vector<NewFile> files = {{options.out, ToYaml(ToValue(motion))}};
   if (!options.look.rig_out.empty()) {
-    WriteFileAtomically(options.look.rig_out, ToYaml(ToValue(nominal)));
+    files.push_back({options.look.rig_out, ToYaml(ToValue(nominal))});
   }
+  WriteFilesTogether(files);
   if (global.json) {
     Value result = Value::Object()
                        .Set("kind", "plan")
@@ -332,14 +370,14 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
                        .Set("motion_s", Duration(motion))
                        .Set("information_evaluations", num_evaluations)
                        .Set("expected", expected);
-    if (look) result.Set("board", ToValue(*look, nominal));
+    if (seen) result.Set("board", ToValue(*seen));
     std::fputs(ToJson(result).c_str(), stdout);
   } else if (!global.quiet) {
-    if (look) std::printf("%s\n", Describe(*look, nominal).c_str());
+    if (seen) std::printf("%s\n", Describe(*seen).c_str());
     std::printf("expected standard deviations of the calibration\n");
-    const Motion half = Shrunk(problem, motion, 0.5);
+    const std::optional<Motion> half = HalfOf(problem, motion, carrier, arm, rig);
     const Motion twice = Twice(motion);
-    PrintExpectation("half the path", half, Expectation(task, rig, half));
+    if (half) PrintExpectation("half the path", *half, Expectation(task, rig, *half));
     PrintExpectation("this motion", motion, expected);
     PrintExpectation("twice this motion", twice, Expectation(task, rig, twice));
     std::printf("motion: %s\n", options.out.c_str());

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -76,10 +77,15 @@ TEST(PlanCommand, PlansBeforeTheBoardOfAPhoto) {
     // The turn moves the origin of the board too, which is not in its middle.
     EXPECT_NEAR(seen[4 * row + 3], truth[4 * row + 3], 4.0 * sigma_m + 0.2 * sigma_rad);
   }
-  // A guess of the lens serves as well, if not as well as the lens.
+  // A guess of the lens serves as well, if not as well as the lens. From where the photo is taken
+  // to be is said.
   std::vector<std::string> guessed = plan;
+  std::erase(guessed, "--json");
   guessed.insert(guessed.end(), {"--force", "--hfov", "1.0"});
-  EXPECT_EQ(RunProgram(guessed).exit_code, 0);
+  const Ended said = RunProgram(guessed);
+  EXPECT_EQ(said.exit_code, 0) << said.err;
+  EXPECT_THAT(said.out, HasSubstr("photo: from the start pose, the controlled frame at 0.400 0.300 "
+                                  "0.470 m, rpy 1.571 0.800 1.571 rad"));
 }
 
 TEST(PlanCommand, RefusesPhotosThatDoNotServe) {
@@ -108,7 +114,30 @@ TEST(PlanCommand, RefusesPhotosThatDoNotServe) {
   refused({"--photo", grey}, "no board found");
   refused({}, "--rig-out has no use here");
   refused({"--photo", grey, "--photo-joints", "0,0,0,1,0,0,0"}, "bad --photo-joints");
+  refused({"--photo", grey, "--photo-joints", "0,0,nan,-1,0,1,0"}, "bad --photo-joints");
   refused({"--photo", grey, "--hfov", "1.0", "--cameras", rig}, "say the same thing");
+}
+
+TEST(PlanCommand, WritesNothingWhereOneOfItsFilesCannotBe) {
+  const ScratchFolder scratch;
+  const std::string rig = scratch.Write("rig.yaml", RigYaml());
+  const std::string photo =
+      scratch.Write("photo.pgm", "P5 640 480 255\n" + std::string(307200, '\x80'));
+  const auto before = FilesBelow(scratch.Path(""));
+  const auto refused = [&](const std::string& out, const std::string& rig_out,
+                           const std::string& why) {
+    const Ended ended = RunProgram({"plan", "--rig", rig, "--method", "fisher", "--photo", photo,
+                                    "--out", out, "--rig-out", rig_out, "--force"});
+    EXPECT_EQ(ended.exit_code, 2) << why;
+    EXPECT_THAT(ended.err, HasSubstr(why));
+    EXPECT_EQ(std::ranges::count(ended.err, '\n'), 1) << ended.err;
+    EXPECT_EQ(FilesBelow(scratch.Path("")), before);
+  };
+  const std::string out = scratch.Path("motion.yaml");
+  refused(out, scratch.Path("./motion.yaml"), "it is that of --out and that of --rig-out");
+  refused(rig, scratch.Path("seen.yaml"), "it is that of --rig and that of --out");
+  refused(out, photo, "it is that of --photo and that of --rig-out");
+  refused(out, scratch.Path("nowhere/seen.yaml"), "cannot write file");
 }
 
 TEST(PlanCommand, PlansForAnArmByItsUrdfAndExportsIt) {
@@ -136,6 +165,34 @@ TEST(PlanCommand, PlansForAnArmByItsUrdfAndExportsIt) {
   const Ended refused = RunProgram(write);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("no franka-csv for the arm UR5e"));
+}
+
+// "half the path  1.69 m  49.1 s  ..": its seconds.
+double SecondsOf(const std::string& what, const std::string& text) {
+  std::smatch found;
+  const bool is_said =
+      std::regex_search(text, found, std::regex(what + R"( +[0-9.]+ m +([0-9.]+) s)"));
+  EXPECT_TRUE(is_said) << what << " in " << text;
+  return is_said ? std::stod(found[1]) : 0.0;
+}
+
+TEST(PlanCommand, SaysHowLongTheArmTakesForHalfThePath) {
+  const ScratchFolder scratch;
+  const std::string rig = scratch.Write("rig.yaml", RigYaml());
+  const std::string arms = std::string(CALIBRATO_EXAMPLES) + "/arms/";
+  std::string slow = ContentOf(arms + "ur5e.yaml");
+  slow.replace(slow.find("ur5e.urdf"), 9, arms + "ur5e.urdf");
+  slow += "max_velocity_rad_s: [0.1, 0.1, 0.1, 0.1, 0.1, 0.1]\n";
+  const Ended ended = RunProgram({"plan", "--rig", rig, "--arm", scratch.Write("slow.yaml", slow),
+                                  "--method", "best-of-1000", "--evaluations", "4", "--task",
+                                  "extrinsic", "--out", scratch.Path("motion.yaml")});
+  ASSERT_EQ(ended.exit_code, 0) << ended.err;
+  // At the limit of its speed, half the way takes half the time; a hand takes far less.
+  const double whole_s = SecondsOf("this motion", ended.out);
+  const double half_s = SecondsOf("half the path", ended.out);
+  EXPECT_GT(whole_s, 60.0);
+  EXPECT_NEAR(half_s / whole_s, 0.5, 0.1);
+  EXPECT_NEAR(SecondsOf("twice this motion", ended.out), 2.0 * whole_s, 0.2);
 }
 
 }  // namespace

@@ -45,7 +45,6 @@ std::vector<size_t> InformativeViews(const CameraProblem& camera, const std::str
 // What repeated views do to the covariance, where they are many.
 std::optional<Finding> OnRepeatedViews(const CameraProblem& camera, const std::string& name) {
   constexpr double kWorthAWord = 0.05;
-  constexpr double kWorthAWarning = 1.0 / 3.0;
   const auto all = static_cast<double>(camera.views.size());
   const auto distinct = static_cast<double>(SelectDistinct(camera.views).size());
   const double repeated = (all - distinct) / all;
@@ -55,8 +54,7 @@ std::optional<Finding> OnRepeatedViews(const CameraProblem& camera, const std::s
                 "%s: %.0f of %.0f views repeat another, and their corners' errors with it: sigmas "
                 "may be up to %.0f %% too small",
                 name.c_str(), all - distinct, all, 100.0 * (1.0 - std::sqrt(distinct / all)));
-  return Finding{repeated > kWorthAWarning ? Severity::kWarn : Severity::kInfo, text,
-                 "leave them out with --select distinct"};
+  return Finding{Severity::kInfo, text, "leave them out with --select distinct"};
 }
 
 void Keep(const std::set<int>& frames, CameraRigProblem* problem) {

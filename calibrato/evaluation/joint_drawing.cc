@@ -45,13 +45,13 @@ Value Drawn(const Quantity& quantity, const JointsAgainstLimits& joints) {
       for (size_t k = begin; k < std::min(begin + span, num_samples); ++k) {
         const double v = quantity.value(k, joint);
         const double s = quantity.share(v, joint);
-        if (k > begin && !(std::abs(s) > std::abs(share))) continue;
+        if (k > begin && std::abs(s) <= std::abs(share)) continue;
         value = v;
         share = s;
       }
       values.Append(Rounded(value));
       shares.Append(Rounded(share));
-      if (std::abs(share) > largest) {
+      if (!(std::abs(share) <= largest)) {  // NaN is the largest of all.
         largest = std::abs(share);
         worst_joint = static_cast<int>(joint) + 1;
       }

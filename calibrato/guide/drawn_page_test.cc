@@ -11,6 +11,7 @@
 #include "calibrato/base/value.h"
 #include "calibrato/guide/guide_document.h"
 #include "calibrato/guide/guide_page.h"
+#include "calibrato/report/report.h"
 
 namespace calibrato {
 namespace {
@@ -47,10 +48,10 @@ class DrawnGuide : public testing::TestWithParam<const char*> {
     }
   }
   // The page's markup once its script has shown the state.
-  std::string Draw(const Value& state) const {
+  std::string Draw(const Value& state, const std::string& report = "<p>") const {
     const GuidePage page("127.0.0.1", 0,
                          {[&] { return ToJsonLine(state); }, [] { return std::string(); },
-                          [] { return std::string("<p>"); }, [] {}},
+                          [&] { return report; }, [] {}},
                          [](const std::string&) {});
     const std::filesystem::path profile =
         std::filesystem::temp_directory_path() / ("calibrato_guide_" + std::to_string(getpid()));
@@ -101,6 +102,28 @@ TEST_P(DrawnGuide, LeadsToTheReportInTheEnd) {
   EXPECT_TRUE(Says(drawn, "all that is wanted is reached: calibrated"));
   EXPECT_TRUE(Says(drawn, "<a class=\"report\" id=\"report\" href=\"/report\">"));
   EXPECT_TRUE(Says(drawn, "<button id=\"end\" type=\"button\" hidden"));
+}
+
+// Whatever the live solves said, or where none of them succeeded.
+TEST_P(DrawnGuide, ShowsTheSigmasOfTheCalibrationInTheEnd) {
+  GuideSnapshot snapshot = Snapshot();
+  snapshot.ended = "ended on the page";
+  snapshot.is_measured = false;
+  snapshot.progress.push_back({"pos_x", "m", 0.2, 0.002});
+  const Value document = GuideDocument(snapshot, {"done", "calibrated", true, 12.0}, {640, 480});
+  Value covariance = Value::Object();
+  covariance.Set("names", Value::Array().Append("cam0.rot_x").Append("cam0.fu"))
+      .Set("matrix", Value::Array()
+                         .Append(Value::Array().Append(1.21e-6).Append(1e-9))
+                         .Append(Value::Array().Append(1e-9).Append(0.09)));
+  Value result = Value::Object();
+  result.Set("kind", "camera-imu").Set("covariance", std::move(covariance));
+  const std::string drawn = Draw(document, ReportHtml("Camera-IMU calibration", {result}));
+  EXPECT_TRUE(Says(drawn, "How well it is known, as calibrated"));
+  EXPECT_TRUE(Says(drawn, "\u00b10.30 of 1.20 px"));
+  EXPECT_TRUE(Says(drawn, "\u00b10.063 of 0.050 \u00b0"));
+  // Of what the result has no sigma.
+  EXPECT_TRUE(Says(drawn, "\u00b1? of 2.00 mm"));
 }
 
 INSTANTIATE_TEST_SUITE_P(OnADeskAndOnAPhone, DrawnGuide, testing::Values("1280,900", "390,844"));

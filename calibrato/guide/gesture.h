@@ -31,6 +31,7 @@ struct Gesture {
   double period_s = 1.0;                                 ///< Of one to and fro, > 0 [s].
   double duration_s = 2.0;                               ///< > 0
   std::optional<CameraLoop> loop{};                      ///< Made instead of turns and shifts.
+  int loop_number = 0;                                   ///< In its motion, from 1.
 };
 
 /// @param t_s  In [0, duration_s]; clamped outside [s].

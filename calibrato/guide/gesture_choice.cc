@@ -70,9 +70,11 @@ class Prospect {
         progress_(estimate.progress) {}
 
   [[nodiscard]] double TimeOf(size_t k) const { return gestures_[k].duration_s + options_.way_s; }
-  // Of the distance that is left, a second.
+  // Of the distance that is left, what may be counted on a second.
   [[nodiscard]] double RateOf(size_t k) const {
-    return (DistanceFromWanted(progress_) - DistanceFromWanted(ProgressWith(k))) / TimeOf(k);
+    const auto trust = options_.trust.find(gestures_[k].name);
+    const double gain = DistanceFromWanted(progress_) - DistanceFromWanted(ProgressWith(k));
+    return (trust == options_.trust.end() ? 1.0 : trust->second) * gain / TimeOf(k);
   }
   [[nodiscard]] bool is_reached() const {
     return std::all_of(progress_.begin(), progress_.end(),
@@ -167,6 +169,7 @@ GuidePlan PlanInOrder(const GuideProblem& problem, const LiveEstimate& estimate,
                       const std::vector<Gesture>& gestures, size_t first,
                       const GesturePlanOptions& options) {
   GuidePlan plan;
+  plan.is_in_order = true;
   plan.is_reached = estimate.is_reached();
   if (plan.is_reached || gestures.empty()) return plan;
   Prospect prospect(problem, estimate, gestures, options);

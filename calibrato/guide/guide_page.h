@@ -12,7 +12,8 @@ namespace calibrato {
 /// GET /report the report once there is one, POST /end to end the recording. Nothing else is there.
 class GuidePage {
  public:
-  /// What to answer with, called on several threads; an empty text is answered by 404.
+  /// What to answer with, called on several threads; an empty text is answered by 404, but an empty
+  /// image by 204, No Content: there is a /frame, and nothing in it.
   struct Content {
     std::function<std::string()> state;   ///< JSON
     std::function<std::string()> frame;   ///< JPEG

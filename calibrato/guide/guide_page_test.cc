@@ -85,16 +85,18 @@ std::string BodyOf(const std::string& answer) {
 class ServedPage : public testing::Test {
  protected:
   void Open(const std::string& host) {
-    page_.emplace(host, 0,
-                  GuidePage::Content{[] { return std::string("{\"kind\": \"guide\"}"); },
-                                     [] { return std::string("\xff\xd8 jpeg"); },
-                                     [this] { return has_report_ ? std::string("<p>") : ""; },
-                                     [this] { ++num_ends_; }},
-                  [this](const std::string& address) { addresses_.push_back(address); });
+    page_.emplace(
+        host, 0,
+        GuidePage::Content{[] { return std::string("{\"kind\": \"guide\"}"); },
+                           [this] { return has_image_ ? std::string("\xff\xd8 jpeg") : ""; },
+                           [this] { return has_report_ ? std::string("<p>") : ""; },
+                           [this] { ++num_ends_; }},
+        [this](const std::string& address) { addresses_.push_back(address); });
   }
   int port() const { return page_->port(); }
   void ExpectAlive() const { EXPECT_EQ(StatusOf(Get(port(), "/state")), 200); }
 
+  std::atomic<bool> has_image_ = true;
   std::atomic<bool> has_report_ = false;
   std::atomic<int> num_ends_ = 0;
   std::vector<std::string> addresses_;
@@ -119,6 +121,17 @@ TEST_F(ServedPage, AnswersItsFewAddressesAndNoOther) {
     EXPECT_EQ(StatusOf(answer), 404) << target;
     EXPECT_EQ(answer.find("root:"), std::string::npos) << target;
   }
+}
+
+// Asked ten times a second of a recording without images: nothing, and no fault.
+TEST_F(ServedPage, HasNoContentWhereThereIsNoImage) {
+  Open("127.0.0.1");
+  has_image_ = false;
+  const std::string answer = Get(port(), "/frame");
+  EXPECT_EQ(StatusOf(answer), 204);
+  EXPECT_EQ(BodyOf(answer), "");
+  has_image_ = true;
+  EXPECT_EQ(StatusOf(Get(port(), "/frame")), 200);
 }
 
 TEST_F(ServedPage, EndsOnlyByItsOwnButton) {

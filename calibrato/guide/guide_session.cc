@@ -108,7 +108,7 @@ bool GuideSession::AddSearchedView(Time stamp, std::optional<BoardView> view, bo
   if (!first_stamp_) first_stamp_ = stamp;
   last_stamp_ = stamp;
   ++num_frames_;
-  ++frames_in_gesture_;
+  ++frames_in_gesture_.all;
   const double now_s = SecondsSince(first_stamp_, stamp);
   latest_.reset();
   if (view) {
@@ -116,7 +116,7 @@ bool GuideSession::AddSearchedView(Time stamp, std::optional<BoardView> view, bo
     view->name = std::to_string(stamp.nanoseconds());
     latest_ = view;
     last_seen_s_ = now_s;
-    if (is_sharp) ++good_frames_in_gesture_;
+    if (is_sharp) ++frames_in_gesture_.good;
     if (!start_) start_ = *view;
     coverage_.Add(ViewParametersOf(*view, problem_.resolution));
     data_.views.push_back(std::move(*view));
@@ -181,36 +181,57 @@ void GuideSession::Warn(const std::string& words) {
   warnings_.push_back({words, now_s});
 }
 
+// Little is learned without the board, or blurred; and from the same data follows the same plan.
+// So a gesture that went wrong is asked for slower, and later than others.
+void GuideSession::JudgeGesture() {
+  const FrameCount frames = frames_in_gesture_;
+  frames_in_gesture_ = {};
+  if (!gesture_ || frames.all == 0) return;
+  if (frames.good >= kGoodShare * frames.all) {
+    experience_.lost.erase(gesture_->name);
+    return;
+  }
+  FrameCount& lost = experience_.lost[gesture_->name];
+  lost.good += frames.good;
+  lost.all += frames.all;
+  experience_.pace = std::max(kSlowest, kSlower * experience_.pace);
+  Warn("too many frames were lost: slower");
+}
+
 // From the newest plan; where it is older than the gesture that ends, its next.
 void GuideSession::TakeNextGesture() {
-  if (gesture_ && frames_in_gesture_ > 0 &&
-      good_frames_in_gesture_ < kGoodShare * frames_in_gesture_) {
-    pace_ = std::max(kSlowest, kSlower * pace_);
-    Warn("too many frames were lost: slower");
-  }
-  frames_in_gesture_ = 0;
-  good_frames_in_gesture_ = 0;
+  JudgeGesture();
   if (has_new_plan_) next_in_plan_ = 0;
   has_new_plan_ = false;
   gesture_.reset();
   if (next_in_plan_ >= plan_.gestures.size()) return;
   gesture_ = plan_.gestures[next_in_plan_++];
-  ++num_taken_;
+  ++experience_.num_taken;
+  experience_.last_loop = gesture_->loop_number;
   gesture_begin_s_ = SecondsSince(first_stamp_, last_stamp_);
 }
 
-GuidePlan GuideSession::PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g, double pace,
-                                 double rate_hz, size_t num_taken) const {
+GuidePlan GuideSession::PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g,
+                                 const Experience& experience, double rate_hz) const {
   GestureSetting setting{estimate.camera, problem_.resolution, problem_.points,
                          FacingBoard(problem_.points, T_c_g.Inverse()), options_.hand};
+  const double pace = experience.pace;
   setting.hand.speed *= pace;
   setting.hand.acceleration *= pace * pace;
   setting.hand.angular_speed *= pace;
   setting.hand.angular_acceleration *= pace * pace;
-  const GesturePlanOptions plan{rate_hz, kWay, 40};
+  GesturePlanOptions plan{rate_hz, kWay, 40};
+  // Above 0 even without a good frame: where all go wrong, each has its turn again.
+  for (const auto& [name, frames] : experience.lost) {
+    plan.trust[name] = (1.0 + frames.good) / (1.0 + frames.all);
+  }
   if (options_.motion) {
     const std::vector<Gesture> loops = GesturesOfMotion(setting, *options_.motion);
-    if (!loops.empty()) return PlanInOrder(problem_, estimate, loops, num_taken, plan);
+    // Which loops fit may change: on with the first of them after the one that was made last.
+    const auto next = std::ranges::find_if(
+        loops, [&](const Gesture& loop) { return loop.loop_number > experience.last_loop; });
+    const auto first = static_cast<size_t>(next - loops.begin());
+    if (!loops.empty()) return PlanInOrder(problem_, estimate, loops, first, plan);
   }
   return PlanGestures(problem_, estimate, GesturesFor(setting), plan);
 }
@@ -245,8 +266,7 @@ void GuideSession::SolveAgainAndAgain() {
     const double rate_hz = now_s > 1.0 ? num_frames_ / now_s : 20.0;
     GuideData data = data_;
     BoardView start = *start_;
-    const double pace = pace_;
-    const size_t num_taken = num_taken_;
+    const Experience experience = experience_;
     lock.unlock();
     LiveEstimate estimate = GuessBefore(problem_);
     GuidePlan plan;
@@ -254,7 +274,7 @@ void GuideSession::SolveAgainAndAgain() {
     try {
       estimate = EstimateSoFar(problem_, data);
       if (const auto T_c_g = PoseFromView(estimate.camera, start)) {
-        plan = PlanFrom(estimate, *T_c_g, pace, rate_hz, num_taken);
+        plan = PlanFrom(estimate, *T_c_g, experience, rate_hz);
       }
     } catch (const std::exception& error) {  // Of data; the recording goes on.
       fault = error.what();
@@ -264,10 +284,13 @@ void GuideSession::SolveAgainAndAgain() {
     estimate_ = std::move(estimate);
     plan_ = std::move(plan);
     has_new_plan_ = true;
+    if (options_.motion && !plan_.is_in_order && !plan_.gestures.empty()) {
+      Warn("no loop of the policy fits into view and reach: other gestures are chosen");
+    }
     // What was taken meanwhile was the beginning of this plan's order.
-    if (options_.motion) {
+    if (plan_.is_in_order) {
       has_new_plan_ = false;
-      next_in_plan_ = num_taken_ - num_taken;
+      next_in_plan_ = experience_.num_taken - experience.num_taken;
     }
     solved_until_s_ = now_s;
     const bool is_measured = (problem_.known_camera || estimate_.camera_is_measured) &&
@@ -297,7 +320,8 @@ GuideSnapshot GuideSession::Snapshot() const {
     if (now_s - warning.at_s <= kWarningLasts) snapshot.warnings.push_back(warning.words);
   }
   snapshot.num_dropped_frames = num_dropped_frames_;
-  if (num_dropped_frames_ > 0 && now_s - dropped_at_s_ <= kWarningLasts) {
+  // A few are no loss: where more are left out than looked at, it is worth a word.
+  if (num_dropped_frames_ > num_frames_ && now_s - dropped_at_s_ <= kWarningLasts) {
     snapshot.warnings.push_back("frames come faster than this machine takes them: " +
                                 std::to_string(num_dropped_frames_) + " were left out");
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -54,8 +55,9 @@ struct GuideSnapshot {
 /// Guides a person through a recording: frames and IMU samples in, what to do next out. A frame is
 /// searched for the board by whoever hands it over; solves and the choice of gestures run on a
 /// thread of the session's own, every few seconds, on all the data so far: a hint never waits for
-/// them. It ends by itself when all that is wanted is reached, when more would not help, or when
-/// its time is over.
+/// them. A gesture in which too many frames were without the board, or blurred, gives way to
+/// others. It ends by itself when all that is wanted is reached, when more would not help, or when
+/// its time is over. Its clock is that of the frames, with the board or without.
 class GuideSession {
  public:
   GuideSession(const Board& board, GuideProblem problem, GuideOptions options);
@@ -93,9 +95,23 @@ class GuideSession {
   void Warn(const std::string& words);
   bool AddSample(const VectorSample& sample, std::vector<VectorSample>* samples,
                  const char* sensor);
+  // Frames of a gesture, the way to it included.
+  struct FrameCount {
+    int good = 0;  // With the board, and sharp.
+    int all = 0;
+  };
+  // What the hand did so far, as far as a plan goes by it.
+  struct Experience {
+    double pace = 1.0;     // Of the hand, slowed down where images blur.
+    size_t num_taken = 0;  // Gestures.
+    int last_loop = 0;     // Of the motion, from 1; 0 before the first.
+    // Of gestures in which too many frames were lost when they were asked for last, by name.
+    std::map<std::string, FrameCount> lost;
+  };
+  void JudgeGesture();
   void TakeNextGesture();
-  [[nodiscard]] GuidePlan PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g, double pace,
-                                   double rate_hz, size_t num_taken) const;
+  [[nodiscard]] GuidePlan PlanFrom(const LiveEstimate& estimate, const Rigid3& T_c_g,
+                                   const Experience& experience, double rate_hz) const;
   bool AddSearchedView(Time stamp, std::optional<BoardView> view, bool is_sharp);
   void SolveAgainAndAgain();
 
@@ -110,15 +126,13 @@ class GuideSession {
   GuidePlan plan_;
   bool has_new_plan_ = false;
   size_t next_in_plan_ = 0;
-  size_t num_taken_ = 0;            // Gestures, so far.
   std::optional<BoardView> start_;  // The first view: gestures are made around it.
   std::optional<BoardView> latest_;
   CoverageRange coverage_;
   std::optional<Gesture> gesture_;
   double gesture_begin_s_ = 0.0;
-  int frames_in_gesture_ = 0;
-  int good_frames_in_gesture_ = 0;
-  double pace_ = 1.0;  // Of the hand, slowed down where images blur.
+  FrameCount frames_in_gesture_;
+  Experience experience_;
   std::optional<Time> first_stamp_;
   Time last_stamp_;
   double last_seen_s_ = 0.0;

@@ -67,18 +67,22 @@ class Unplugged : public FrameSource {
   bool throws_;
 };
 
+FrameSource::ImuSink SinkOf(GuideSession* session) {
+  return {[session](const VectorSample& gyro, const VectorSample& accel) {
+            session->AddGyro(gyro);
+            session->AddAccel(accel);
+          },
+          {},
+          {}};
+}
+
 TEST(GuideSession, AsksForGesturesAndEndsWhenAllIsReached) {
   SyntheticCameraImu truth;
   truth.duration_s = 12.0;
   GuideSession session(truth.board, ProblemOf(truth), {});
   EXPECT_FALSE(session.Snapshot().is_measured);
   const auto source = OpenReplaySource(RecordingOf(truth), 0.0, {});
-  const FrameSource::ImuSink sink{[&](const VectorSample& gyro, const VectorSample& accel) {
-                                    session.AddGyro(gyro);
-                                    session.AddAccel(accel);
-                                  },
-                                  {},
-                                  {}};
+  const FrameSource::ImuSink sink = SinkOf(&session);
   bool has_hint = false;
   for (int k = 0; auto frame = source->Next(sink, [] { return false; }); ++k) {
     session.AddView(frame->stamp, frame->view);
@@ -101,6 +105,38 @@ TEST(GuideSession, AsksForGesturesAndEndsWhenAllIsReached) {
   EXPECT_LT(last.elapsed_s, 11.9);
 }
 
+// At a gesture's place the board may never be seen: the hand does not get it right, or a table's
+// edge is before it. From the same data follows the same plan; so others have to have their turn.
+TEST(GuideSession, AsksForOtherGesturesWhereTheBoardIsNotSeen) {
+  const SyntheticCameraImu truth;
+  GuideOptions options;
+  options.solve_period_s = std::numeric_limits<double>::infinity();  // Only when waited for.
+  GuideSession session(truth.board, ProblemOf(truth), options);
+  Rng rng(4);
+  const BoardView view = truth.Problem(rng).cameras[0].views[0];
+  constexpr double kRate = 10.0;
+  std::vector<std::string> names;
+  double left_s = 0.0;
+  for (int k = 0; k < 40 * kRate; ++k) {
+    const Time stamp = Time::FromNanoseconds(1) + Duration::FromSeconds(k / kRate);
+    session.AddView(stamp, k < 2 ? std::optional(view) : std::nullopt);
+    if (k % 20 == 0) session.WaitForSolve();
+    const GuideSnapshot snapshot = session.Snapshot();
+    if (!snapshot.gesture) continue;
+    // Less time is left of the same hint with each frame.
+    if (snapshot.gesture_left_s > left_s) names.push_back(snapshot.gesture->name);
+    left_s = snapshot.gesture_left_s;
+  }
+  ASSERT_GE(names.size(), 8U);
+  for (size_t k = 2; k < names.size(); ++k) {
+    // Once more at most: the plan may be older than the gesture's end.
+    EXPECT_FALSE(names[k] == names[k - 1] && names[k] == names[k - 2]) << k << " " << names[k];
+  }
+  std::sort(names.begin(), names.end());
+  EXPECT_GE(std::unique(names.begin(), names.end()) - names.begin(), 5);
+  EXPECT_FALSE(session.has_ended());
+}
+
 // Loop after loop, whatever would tell more, and again from the first.
 TEST(GuideSession, AsksForTheLoopsOfAMotionInTheirOrder) {
   SyntheticCameraImu truth;
@@ -112,12 +148,7 @@ TEST(GuideSession, AsksForTheLoopsOfAMotionInTheirOrder) {
   problem.wanted = {1e-9, 1e-9, 1e-9, 1e-9};  // Never reached.
   GuideSession session(truth.board, problem, options);
   const auto source = OpenReplaySource(RecordingOf(truth), 0.0, {});
-  const FrameSource::ImuSink sink{[&](const VectorSample& gyro, const VectorSample& accel) {
-                                    session.AddGyro(gyro);
-                                    session.AddAccel(accel);
-                                  },
-                                  {},
-                                  {}};
+  const FrameSource::ImuSink sink = SinkOf(&session);
   std::vector<std::string> names;
   for (int k = 0; auto frame = source->Next(sink, [] { return false; }); ++k) {
     session.AddView(frame->stamp, frame->view);
@@ -129,6 +160,32 @@ TEST(GuideSession, AsksForTheLoopsOfAMotionInTheirOrder) {
   for (size_t k = 0; k < names.size(); ++k) {
     EXPECT_EQ(names[k], "loop " + std::to_string(k % 3 + 1));
   }
+}
+
+TEST(GuideSession, ChoosesGesturesAndSaysSoWhereNoLoopFits) {
+  SyntheticCameraImu truth;
+  truth.duration_s = 6.0;
+  GuideOptions options;
+  options.motion = HandcraftedMotion(Task::kExtrinsic);
+  for (Loop& loop : options.motion->loops) loop.coefficients *= 1000.0;
+  GuideProblem problem = ProblemOf(truth);
+  problem.wanted = {1e-9, 1e-9, 1e-9, 1e-9};  // Never reached.
+  GuideSession session(truth.board, problem, options);
+  const auto source = OpenReplaySource(RecordingOf(truth), 0.0, {});
+  const FrameSource::ImuSink sink = SinkOf(&session);
+  bool is_said = false;
+  for (int k = 0; auto frame = source->Next(sink, [] { return false; }); ++k) {
+    session.AddView(frame->stamp, frame->view);
+    if (k % 20 == 0) session.WaitForSolve();
+    const GuideSnapshot snapshot = session.Snapshot();
+    if (snapshot.gesture) {
+      EXPECT_EQ(snapshot.gesture->loop_number, 0);
+    }
+    for (const std::string& warning : snapshot.warnings) {
+      is_said = is_said || warning.find("no loop of the policy fits") != std::string::npos;
+    }
+  }
+  EXPECT_TRUE(is_said);
 }
 
 TEST(GuideSession, CountsFramesThatCameTooFast) {

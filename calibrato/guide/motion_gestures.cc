@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
 #include <string>
 
 #include "calibrato/geometry/so3.h"
@@ -15,8 +13,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kSmallestShare = 0.2;
-constexpr int kNumInstants = 128;  // Of a loop whose harmonics go up to the fourth.
-constexpr double kFastest = 4.0;   // Of the harmonics.
+constexpr double kHardlyAMotion = 1e-3;  // Of the root sum of squares of the coefficients.
+constexpr int kNumInstants = 128;        // Of a loop whose harmonics go up to the fourth.
+constexpr double kFastest = 4.0;         // Of the harmonics.
 
 // The time that the hand takes at least, for a loop that begins and ends at rest.
 double ShortestDuration(const HandLimits& hand, const Gesture& gesture) {
@@ -51,15 +50,18 @@ bool IsWithinReach(const GestureSetting& setting, const Gesture& gesture) {
 
 std::vector<Gesture> GesturesOfMotion(const GestureSetting& setting, const Motion& motion) {
   std::vector<Gesture> gestures;
+  const Rigid3 T_e_c = PaperRig().T_e_c0;
   for (size_t k = 0; k < motion.loops.size(); ++k) {
     const Loop& loop = motion.loops[k];
+    if (!(loop.coefficients.norm() > kHardlyAMotion)) continue;
     const auto scaled = [&](double share) {
       Gesture gesture;
       gesture.name = "loop " + std::to_string(k + 1);
       gesture.words = "Follow the yellow board with yours: loop " + std::to_string(k + 1) + " of " +
                       std::to_string(motion.loops.size());
       gesture.T_g_c = setting.T_g_c;
-      gesture.loop = CameraLoop{motion.base_pose, share * loop.coefficients, PaperRig().T_e_c0};
+      gesture.loop = CameraLoop{motion.base_pose, share * loop.coefficients, T_e_c};
+      gesture.loop_number = static_cast<int>(k) + 1;
       gesture.duration_s = std::max(loop.duration_s, ShortestDuration(setting.hand, gesture));
       gesture.period_s = gesture.duration_s / kFastest;
       return gesture;

@@ -93,6 +93,8 @@ TEST(GesturesOfMotion, LeaveAMotionThatFitsItsSize) {
   EXPECT_GT(farthest(0.2), 0.5 * setting.hand.reach_m);
   // A fifth of this is beyond it.
   EXPECT_EQ(farthest(2.0), 0.0);
+  // Nothing to follow.
+  EXPECT_TRUE(GesturesOfMotion(setting, Sweep(0.0)).empty());
 }
 
 }  // namespace

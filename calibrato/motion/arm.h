@@ -27,7 +27,7 @@ struct Arm {
   /// Torques are infinite: without inertias, whether motors are strong enough is not known.
   PandaLimits limits;
   JointVector start;           ///< Where motions begin, or near it [rad].
-  std::vector<ArmPart> parts;  ///< What could collide; links from 1, the joints' count + 1 is e.
+  std::vector<ArmPart> parts;  ///< What could collide: links of the base (0) and of the joints.
 
   [[nodiscard]] int num_joints() const { return static_cast<int>(joints.size()); }
 };

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
@@ -33,6 +34,7 @@ std::vector<ArmPart> PandaParts(const Rig& rig) {
 }
 
 Capsule InBase(const std::vector<Rigid3>& frames, const ArmPart& part) {
+  if (part.link == 0) return part.capsule;
   const Rigid3& T = frames[static_cast<size_t>(part.link) - 1];
   return {T * part.capsule.a, T * part.capsule.b, part.capsule.radius_m};
 }
@@ -198,7 +200,7 @@ Clearance ClearanceCheck::Least(const JointVector& q) const {
   };
   for (size_t i = 0; i < parts_.size(); ++i) {
     for (const NamedBox& thing : things_) {
-      if (parts_[i].link == 1) continue;
+      if (parts_[i].link <= 1) continue;
       // Not nearer than the ball around the capsule.
       const Vector3d middle = 0.5 * (capsules[i].a + capsules[i].b);
       const double ball = 0.5 * (capsules[i].b - capsules[i].a).norm() + capsules[i].radius_m;
@@ -207,7 +209,7 @@ Clearance ClearanceCheck::Least(const JointVector& q) const {
     }
     constexpr int kNeighbours = 2;
     for (size_t j = i + 1; j < parts_.size(); ++j) {
-      if (parts_[j].link - parts_[i].link <= kNeighbours) continue;
+      if (std::abs(parts_[j].link - parts_[i].link) <= kNeighbours) continue;
       consider(Distance(capsules[i], capsules[j]), parts_[i].name, parts_[j].name);
     }
   }

@@ -33,7 +33,7 @@ struct Capsule {
 /// A part of the arm, in the frame of its link.
 struct ArmPart {
   std::string name;  ///< "link 5", "hand"
-  int link;          ///< From 1; one more than the arm has joints is the controlled frame e.
+  int link;          ///< 0 is the base; one more than the arm has joints is the controlled frame e.
   Capsule capsule;
 };
 /// Links 1 to 7 and the hand with its fingers: capsules around the maker's shape of each.
@@ -53,8 +53,8 @@ struct Clearance {
 
 /// How far the arm is from its surroundings, from the boxes that its owner keeps it out of, and
 /// from itself. The camera and the IMU of the rig count as spheres of 20 mm on the hand. Links that
-/// touch by their build are left out: neighbours, and those with one link between; link 1, which
-/// can't leave its place, against boxes.
+/// touch by their build are left out: neighbours, and those with one link between; the base and
+/// link 1, which can't leave their place, against boxes.
 class ClearanceCheck {
  public:
   /// Of the Panda.

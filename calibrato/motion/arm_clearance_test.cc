@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "calibrato/base/rng.h"
 #include "calibrato/geometry/so3.h"
@@ -79,6 +80,29 @@ TEST(ClearanceCheck, NamesTheTableUnderALowHand) {
   const Clearance clearance = ClearanceCheck(rig).Least(low);
   EXPECT_LT(clearance.distance_m, 0.0);
   EXPECT_NE(clearance.what.find("to table"), std::string::npos) << clearance.what;
+}
+
+// A ball of a link on the base's, the third away: whichever of the two is named first.
+TEST(ClearanceCheck, HoldsTheArmAgainstItsBaseInAnyOrderOfParts) {
+  const Rig rig = PaperRig();
+  const Vector3d place(0.0, 0.0, 5.0);  // far from table and board
+  const auto ball = [&](const char* name, int link, double way) {
+    const Vector3d middle = place + Vector3d(way, 0.0, 0.0);
+    return ArmPart{name, link, {middle, middle, 0.1}};
+  };
+  const auto frames = [](const JointVector&) {
+    std::vector<Rigid3> all(7);
+    all.back().t.z() = 10.0;  // the hand with camera and IMU, far as well
+    return all;
+  };
+  const auto least = [&](const std::vector<ArmPart>& parts) {
+    return ClearanceCheck(rig, parts, frames, 6).Least(JointVector::Zero());
+  };
+  EXPECT_NEAR(least({ball("base", 0, 0.0), ball("wrist", 3, 0.25)}).distance_m, 0.05, 1e-12);
+  EXPECT_NEAR(least({ball("wrist", 3, 0.25), ball("base", 0, 0.0)}).distance_m, 0.05, 1e-12);
+  EXPECT_EQ(least({ball("wrist", 3, 0.25), ball("base", 0, 0.0)}).what, "wrist to base");
+  // Two links on they may touch by their build.
+  EXPECT_GT(least({ball("base", 0, 0.0), ball("elbow", 2, 0.25)}).distance_m, 0.06);
 }
 
 TEST(SurroundingsOf, TheBoardsFrontIsWhereItsPointsAre) {

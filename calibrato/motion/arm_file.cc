@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <utility>
 
 #include "calibrato/base/files.h"
@@ -79,6 +80,11 @@ std::vector<urdf::JointConstSharedPtr> JointsBetween(const urdf::ModelInterface&
                 "name two links of one arm, the base first");
     }
     joints.push_back(link->parent_joint);
+    if (joints.size() > model.joints_.size()) {
+      file.At("tool_link")
+          .Fail("no chain of joints", "in the URDF " + path + " joints lead in a circle",
+                "let every link hang on one other, up to the base");
+    }
   }
   std::ranges::reverse(joints);
   return joints;
@@ -94,13 +100,25 @@ JointVector PerJoint(const Value& value, size_t num_joints, double rest) {
 
 JointVector PositivePerJoint(const Value& value, size_t num_joints) {
   const JointVector vector = PerJoint(value, num_joints, std::numeric_limits<double>::infinity());
-  if (!(vector.minCoeff() > 0.0)) {
+  if (!(vector.minCoeff<Eigen::PropagateNaN>() > 0.0)) {
     value.Fail("bad limit", "limits are above 0", "write one positive number a joint");
   }
   return vector;
 }
 
-// The capsule around a shape, in the frame of its link.
+// Whether the lengths that a shape is given by are above 0; of a mesh none are read.
+bool HasSize(const urdf::Geometry& shape) {
+  if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&shape)) return sphere->radius > 0.0;
+  if (const auto* cylinder = dynamic_cast<const urdf::Cylinder*>(&shape)) {
+    return cylinder->radius > 0.0 && cylinder->length > 0.0;
+  }
+  if (const auto* box = dynamic_cast<const urdf::Box*>(&shape)) {
+    return ToVector(box->dim).minCoeff<Eigen::PropagateNaN>() > 0.0;
+  }
+  return true;
+}
+
+// The capsule around a shape, in the shape's own frame; nothing of a mesh.
 std::optional<Capsule> CapsuleAround(const urdf::Geometry& shape) {
   if (const auto* sphere = dynamic_cast<const urdf::Sphere*>(&shape)) {
     return Capsule{Vector3d::Zero(), Vector3d::Zero(), sphere->radius};
@@ -126,10 +144,35 @@ Capsule Moved(const Rigid3& T, const Capsule& capsule) {
 
 // Where a link of the arm is: fixed to this joint's frame.
 struct LinkPlace {
-  std::string link;
+  urdf::LinkConstSharedPtr link;
   int joint;  // from 1; 0 is the base
   Rigid3 T_joint_link;
 };
+
+// With the links behind them on fixed joints: brackets, a gripper, what stands on the base. What
+// hangs on a joint of its own is named in a warning: nobody says where it is.
+std::vector<LinkPlace> WithFixedLinks(const urdf::ModelInterface& model,
+                                      std::vector<LinkPlace> places, const std::string& path,
+                                      std::vector<std::string>* warnings) {
+  std::set<std::string> known;
+  for (const LinkPlace& place : places) known.insert(place.link->name);
+  for (size_t i = 0; i < places.size(); ++i) {
+    const LinkPlace place = places[i];  // a copy, since the list grows
+    for (const urdf::JointSharedPtr& joint : place.link->child_joints) {
+      if (!known.insert(joint->child_link_name).second) continue;
+      if (joint->type == urdf::Joint::FIXED) {
+        places.push_back({model.getLink(joint->child_link_name), place.joint,
+                          place.T_joint_link * ToRigid3(joint->parent_to_joint_origin_transform)});
+      } else if (warnings != nullptr) {
+        warnings->push_back(
+            "link " + joint->child_link_name + " hangs on joint " + joint->name +
+            ", which is none of the arm's, " + path +
+            ": it is not kept out of anything; give capsules that hold all its way");
+      }
+    }
+  }
+  return places;
+}
 
 [[noreturn]] void FailOnJoint(const urdf::Joint& joint, const std::string& path,
                               const std::string& why, const std::string& remedy) {
@@ -157,7 +200,7 @@ Arm ReadArm(const std::string& path, std::vector<std::string>* warnings) {
   arm.limits.upper.setConstant(1.0);
   arm.limits.velocity.setConstant(std::numeric_limits<double>::infinity());
   arm.limits.torque.setConstant(std::numeric_limits<double>::infinity());
-  std::vector<LinkPlace> places = {{arm.base_frame, 0, {}}};
+  std::vector<LinkPlace> places = {{model->getLink(arm.base_frame), 0, {}}};
   Rigid3 T_joint_next;  // what fixed joints have gathered since the last that turns
   for (const urdf::JointConstSharedPtr& joint : JointsBetween(*model, file, path)) {
     T_joint_next = T_joint_next * ToRigid3(joint->parent_to_joint_origin_transform);
@@ -183,10 +226,14 @@ Arm ReadArm(const std::string& path, std::vector<std::string>* warnings) {
         FailOnJoint(*joint, urdf_path, "its limits leave no room",
                     "write lower < upper and a velocity above 0");
       }
-      arm.joints.push_back({joint->name, T_joint_next, ToVector(joint->axis).normalized()});
+      const Vector3d axis = ToVector(joint->axis);
+      if (!(axis.norm() > 0.0)) {
+        FailOnJoint(*joint, urdf_path, "its axis is 0 0 0", "write the axis that it turns about");
+      }
+      arm.joints.push_back({joint->name, T_joint_next, axis.normalized()});
       T_joint_next = {};
     }
-    places.push_back({joint->child_link_name, arm.num_joints(), T_joint_next});
+    places.push_back({model->getLink(joint->child_link_name), arm.num_joints(), T_joint_next});
   }
   arm.T_last_e = T_joint_next;
   if (arm.num_joints() < 6) {
@@ -206,34 +253,34 @@ Arm ReadArm(const std::string& path, std::vector<std::string>* warnings) {
     arm.limits.velocity = arm.limits.velocity.cwiseMin(PositivePerJoint(*velocity, n));
   }
 
+  places = WithFixedLinks(*model, std::move(places), urdf_path, warnings);
   const auto add = [&](const LinkPlace& place, const Rigid3& T_link_shape, const Capsule& capsule) {
-    // What is fixed to the base can't be moved out of anything's way.
-    if (place.joint == 0) return;
     arm.parts.push_back(
-        {place.link, place.joint, Moved(place.T_joint_link * T_link_shape, capsule)});
+        {place.link->name, place.joint, Moved(place.T_joint_link * T_link_shape, capsule)});
   };
-  std::vector<std::string> shaped;
   for (const LinkPlace& place : places) {
-    for (const urdf::CollisionSharedPtr& collision : model->getLink(place.link)->collision_array) {
+    for (const urdf::CollisionSharedPtr& collision : place.link->collision_array) {
       if (!collision->geometry) continue;
+      if (!HasSize(*collision->geometry)) {
+        throw InputError({"bad shape of link " + place.link->name, urdf_path,
+                          "its lengths are not above 0", "write its sizes in metres"});
+      }
       const std::optional<Capsule> capsule = CapsuleAround(*collision->geometry);
-      if (!capsule) continue;
-      add(place, ToRigid3(collision->origin), *capsule);
-      shaped.push_back(place.link);
+      if (capsule) add(place, ToRigid3(collision->origin), *capsule);
     }
   }
   if (const Value* capsules = file.Find("capsules")) {
     for (const Value& entry : capsules->elements()) {
       const std::string link = entry.At("link").AsString();
-      const auto place = std::ranges::find(places, link, &LinkPlace::link);
+      const auto place = std::ranges::find_if(
+          places, [&](const LinkPlace& known) { return known.link->name == link; });
       if (place == places.end()) {
-        entry.At("link").Fail("no such link", link + " is not between base_link and tool_link",
-                              "name a link of the arm");
+        entry.At("link").Fail("no such link", link + " is neither of the arm nor fixed to it",
+                              "name a link between base_link and tool_link");
       }
       add(*place, {},
           {Vector3d(entry.At("a").AsDoubles(3).data()), Vector3d(entry.At("b").AsDoubles(3).data()),
            entry.At("radius_m").AsPositive()});
-      shaped.push_back(link);
     }
   }
   if (warnings != nullptr) {

@@ -15,10 +15,12 @@ namespace calibrato {
 ///     capsules: [{link, a, b, radius_m}], optional: shapes beside the URDF's
 ///
 /// Of the URDF: joints between both links, their limits, and shapes of `collision` that are boxes,
-/// cylinders or spheres; each becomes the capsule around it. Meshes are not looked at.
+/// cylinders or spheres; each becomes the capsule around it. Meshes are not looked at. Links that
+/// are fixed to the base, to a link of the arm or to the tool are parts of it, as a gripper is.
 /// @throws InputError with file, line and key: unless six or seven revolute joints lie between the
-/// two links, each with limits of position and velocity, and the start is within them. Unknown
-/// keys, and links without a shape, are appended to warnings (may be null).
+/// two links, each with an axis and limits of position and velocity, and the start is within them;
+/// where a shape has no size. Unknown keys, joints with no shape behind them, and links that hang
+/// on the arm by joints of their own, are appended to warnings (may be null).
 [[nodiscard]] Arm ReadArm(const std::string& path, std::vector<std::string>* warnings);
 
 }  // namespace calibrato

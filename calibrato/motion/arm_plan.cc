@@ -17,6 +17,7 @@ Refusal OutOfReach(double rotation_and_way) {
   Refusal refusal;
   refusal.limit = "the arm does not get there: left of turn and way";
   refusal.value = rotation_and_way;
+  refusal.bound = std::numeric_limits<double>::quiet_NaN();
   refusal.unit = "rad, m";
   return refusal;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <numeric>
@@ -99,10 +100,12 @@ std::string Refusal::Describe() const {
   while (digits < kManyDigits && FormatDigits(value, digits) == FormatDigits(bound, digits)) {
     ++digits;
   }
+  // NaN: the value is how far off, and there is nothing to hold it against.
+  const std::string allowed =
+      std::isnan(bound) ? "" : ", allowed " + FormatDigits(bound, digits) + " " + unit;
   return limit + " at loop " + std::to_string(loop + 1) + ", way-point " +
-         std::to_string(way_point) + ": " + FormatDigits(value, digits) + " " + unit +
-         ", allowed " + FormatDigits(bound, digits) + " " + unit + " (" +
-         std::to_string(num_bad_way_points) + " of " + std::to_string(num_way_points) +
+         std::to_string(way_point) + ": " + FormatDigits(value, digits) + " " + unit + allowed +
+         " (" + std::to_string(num_bad_way_points) + " of " + std::to_string(num_way_points) +
          " way-points do not fit)";
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "calibrato/base/input_error.h"
 #include "calibrato/geometry/so3.h"
@@ -205,6 +206,8 @@ TEST(Refusal, DescribesItselfAndCountsLoopsFromOne) {
             "way-points do not fit)");
   refusal.value = -3.07181;  // the digits show the difference, however small
   EXPECT_NE(refusal.Describe().find("-3.07181 rad, allowed -3.0718 rad"), std::string::npos);
+  refusal.bound = std::numeric_limits<double>::quiet_NaN();  // nothing to hold it against
+  EXPECT_EQ(refusal.Describe().find("allowed"), std::string::npos) << refusal.Describe();
 }
 
 TEST(PlanScaledToFit, LeavesAMotionThatFitsAsItIs) {

@@ -127,7 +127,7 @@ const PandaLimits& Limits() {
 }
 
 double JointLimitExcess(const JointVector& q, const JointRange& range) {
-  return (range.lower - q).cwiseMax(q - range.upper).maxCoeff();
+  return (range.lower - q).cwiseMax(q - range.upper).maxCoeff<Eigen::PropagateNaN>();
 }
 
 PandaAxes AxesOf(const JointVector& q) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "calibrato/base/rng.h"
@@ -52,6 +53,20 @@ TEST(PandaPose, JacobianAgreesWithDifferences) {
                     .norm(),
                 1e-8);
     }
+  }
+}
+
+TEST(JointLimitExcess, IsThatOfTheWorstJointAndNotANumberForNone) {
+  const JointVector middle = 0.5 * (Limits().lower + Limits().upper);
+  EXPECT_LT(JointLimitExcess(middle), 0.0);
+  for (int i = 0; i < 7; ++i) {
+    JointVector q = middle;
+    q[i] = Limits().upper[i] + 0.25;
+    EXPECT_NEAR(JointLimitExcess(q), 0.25, 1e-12) << i;
+    q[i] = Limits().lower[i] - 0.25;
+    EXPECT_NEAR(JointLimitExcess(q), 0.25, 1e-12) << i;
+    q[i] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(std::isnan(JointLimitExcess(q))) << i;
   }
 }
 

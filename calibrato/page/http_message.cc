@@ -57,6 +57,8 @@ const char* ReasonOf(int status) {
   switch (status) {
     case 200:
       return "OK";
+    case 204:
+      return "No Content";
     case 303:
       return "See Other";
     case 400:
@@ -129,9 +131,13 @@ HttpResponse Refusal(int status, const std::string& words) {
 }
 
 std::string HttpText(const HttpResponse& response) {
+  // An answer without content says nothing of any (RFC 9110, 8.6).
+  const std::string content =
+      response.status == 204 ? ""
+                             : "\r\nContent-Type: " + response.type +
+                                   "\r\nContent-Length: " + std::to_string(response.body.size());
   std::string text = "HTTP/1.1 " + std::to_string(response.status) + " " +
-                     ReasonOf(response.status) + "\r\nContent-Type: " + response.type +
-                     "\r\nContent-Length: " + std::to_string(response.body.size()) +
+                     ReasonOf(response.status) + content +
                      "\r\nCache-Control: no-store\r\nX-Content-Type-Options: nosniff"
                      "\r\nX-Frame-Options: DENY\r\nReferrer-Policy: no-referrer"
                      "\r\nContent-Security-Policy: default-src 'self' 'unsafe-inline' data: blob:"

@@ -1,5 +1,6 @@
 #include "calibrato/page/live_page.h"
 
+#include <exception>
 #include <utility>
 
 namespace calibrato {
@@ -20,8 +21,13 @@ HttpResponse LivePage::Answer(const HttpRequest& request) {
   if (request.method != "GET") return Refusal(405, "this page is only to be read");
   HttpResponse response;
   if (request.path == "/") {
-    response.type = "text/html; charset=utf-8";
-    response.body = content_.page();
+    try {
+      response.type = "text/html; charset=utf-8";
+      response.body = content_.page();
+    } catch (const std::exception& error) {
+      response = Refusal(500, error.what());
+    }
+    // Of an error too: what is not there yet may be the next time.
     response.headers["Refresh"] = "5";
   } else if (request.path == "/data") {
     response.type = "application/json; charset=utf-8";

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
-#include <filesystem>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -44,10 +43,10 @@ LiveCamera::Device OpenDevice(const std::string& device) {
   // Frames that wait in a queue would get stamps of when they leave it. Where a backend has none to
   // set, as that of streams, nothing changes.
   capture->set(cv::CAP_PROP_BUFFERSIZE, 1);
-  std::error_code ignored;
-  const bool is_file = std::filesystem::is_regular_file(device, ignored);
+  // What knows how many frames it has, as files and sequences of images do, can wait.
+  const bool has_end = !is_number && capture->get(cv::CAP_PROP_FRAME_COUNT) > 0.0;
   return {[capture] { return capture->grab(); }, [capture] { return Retrieved(capture.get()); },
-          !is_file};
+          !has_end};
 }
 
 Time Now() {

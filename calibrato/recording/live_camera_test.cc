@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
 #include <vector>
@@ -72,6 +73,8 @@ Time Now() {
 TEST(LiveCamera, StampsFramesAsTheyComeAndDropsThoseThatNobodyAsksFor) {
   SteppedDevice device;
   LiveCamera camera(device.Device(true));
+  // Wherever the test ends: the camera's thread waits for the device.
+  const std::shared_ptr<void> ending(nullptr, [&](void*) { device.End(); });
   device.GiveUpTo(1);
   const auto first = camera.Next();
   ASSERT_TRUE(first);

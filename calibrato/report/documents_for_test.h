@@ -14,5 +14,6 @@ Value NoiseDocumentForTest();
 Value LearnDocumentForTest();
 Value Table1DocumentForTest();
 Value ParetoDocumentForTest();
+Value DryRunDocumentForTest();
 
 }  // namespace calibrato

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <initializer_list>
 #include <string>
 #include <utility>
@@ -80,6 +81,45 @@ Value ParetoDocumentForTest() {
   Value document = Value::Object();
   document.Set("kind", "pareto").Set("rows", std::move(rows)).Set("plots", std::move(plots));
   return document;
+}
+
+Value DryRunDocumentForTest() {
+  const auto quantity = [](const char* name, const char* unit, double largest) {
+    Value times = Value::Array();
+    Value values = Value::Array();
+    Value shares = Value::Array();
+    for (int joint = 0; joint < 2; ++joint) {
+      Value value = Value::Array();
+      Value share = Value::Array();
+      for (int k = 0; k < 40; ++k) {
+        const double x = largest * std::sin(0.3 * k + joint);
+        if (joint == 0) times.Append(0.1 * k);
+        value.Append(2.0 * x);
+        share.Append(x);
+      }
+      values.Append(std::move(value));
+      shares.Append(std::move(share));
+    }
+    return Value::Object()
+        .Set("name", name)
+        .Set("unit", unit)
+        .Set("largest_share", largest)
+        .Set("joint", 2)
+        .Set("t_s", std::move(times))
+        .Set("values", std::move(values))
+        .Set("shares", std::move(shares));
+  };
+  Value joints = Value::Object();
+  joints.Set("names", Value::Array().Append("shoulder <pan>").Append("elbow"))
+      .Set("quantities", Value::Array()
+                             .Append(quantity("velocity", "rad/s", 0.4))
+                             .Append(quantity("jerk", "rad/s^3", 1.3)));
+  return Value::Object()
+      .Set("kind", "dry-run")
+      .Set("arm", "UR5e")
+      .Set("motion_s", 3.9)
+      .Set("scale", 0.9)
+      .Set("joints", std::move(joints));
 }
 
 }  // namespace calibrato

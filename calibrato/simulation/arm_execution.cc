@@ -20,9 +20,8 @@ using Eigen::Vector3d;
 
 constexpr double kAfterwards = 0.2;  // [s]
 
-// The links on elastic gears: e'' + 2 zeta w e' + w^2 e = -(acceleration of the motors) for e =
-// link
-// - motor, by the exact solution for an acceleration that stays the same during a step.
+// The links on elastic gears, e = link - motor: e'' + 2 zeta w e' + w^2 e = -(acceleration of the
+// motors), by the exact solution for an acceleration that stays the same during a step.
 class ElasticGears {
  public:
   ElasticGears(const ArmDisturbances& arm, double step_s)

@@ -71,8 +71,9 @@ class RunningGuide {
     }
     return assert.fail(`no address ${count}: ${this.stderr}`);
   }
-  stop() {
+  async stop() {
     if (this.process.exitCode === null) this.process.kill("SIGKILL");
+    await this.exited;
   }
 }
 

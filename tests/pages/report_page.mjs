@@ -249,6 +249,8 @@ async function assertPrints(page) {
 }
 
 const kWords = [
+  "Beyond the limit of jerk.",
+  "shoulder <pan>",
   "Usable, with the reservations below.",
   "the board's size varies little",
   // Of two cameras, each with its own pictures; the second is drawn by angles.
@@ -285,6 +287,7 @@ const kWords = [
 ];
 
 const kWordsOfWhatIsWrong = [
+  "Nothing is known of its joints.",
   "This page cannot draw results of kind “horoscope”.",
   "\"luck\": 7",
   "Do not use this calibration.",

@@ -15,11 +15,11 @@ namespace calibrato {
 namespace {
 
 std::string PageOfEveryKind() {
-  return ReportHtml(
-      "Every kind of result",
-      {CameraDocumentForTest(), CameraImuDocumentForTest(), CheckDocumentForTest(),
-       NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest(),
-       ParetoDocumentForTest(), CameraImuDiffDocumentForTest(), MergeDocumentForTest()});
+  return ReportHtml("Every kind of result",
+                    {CameraDocumentForTest(), CameraImuDocumentForTest(), CheckDocumentForTest(),
+                     NoiseDocumentForTest(), LearnDocumentForTest(), Table1DocumentForTest(),
+                     ParetoDocumentForTest(), CameraImuDiffDocumentForTest(),
+                     MergeDocumentForTest(), DryRunDocumentForTest()});
 }
 
 std::string PageOfWhatIsWrong() {
@@ -36,7 +36,7 @@ std::string PageOfWhatIsWrong() {
       "What is missing or wrong",
       {Value::Object().Set("kind", "horoscope").Set("luck", 7), camera, broken, empty("learn"),
        empty("table1"), empty("camera-imu"), empty("diff"), empty("check"), empty("noise"),
-       empty("rivals"), empty("evaluation"), empty("merge")});
+       empty("rivals"), empty("evaluation"), empty("merge"), empty("dry-run")});
 }
 
 }  // namespace

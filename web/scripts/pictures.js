@@ -16,7 +16,7 @@ function cividis(share) {
   const at = Math.min(1, Math.max(0, share)) * (kCividis.length - 1);
   const low = Math.min(Math.floor(at), kCividis.length - 2);
   const [a, b] = [rgb(kCividis[low]), rgb(kCividis[low + 1])];
-  return `rgb(${a.map((x, i) => Math.round(x + (b[i] - x) * (at - low))).join(" ")})`;
+  return `rgb(${a.map((x, i) => Math.round(x + (b[i] - x) * (at - low))).join(", ")})`;
 }
 
 /** 1, 2 or 5 times a power of ten, at most x. */

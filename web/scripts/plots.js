@@ -218,10 +218,16 @@ function pointsOf(trace) {
 
 /** What a plot shows, a line for each point; columns without a value are left out. */
 function plotRows(place) {
+  // Where traces have axes of their own, as of x, y and z one above the other, the series says which.
+  const ownAxis = (trace) => axisTitles(place, trace)[1];
+  const several = new Set(place.data.map(ownAxis)).size > 1;
+  const series = (trace) => several ? `${untagged(trace.name)}, ${ownAxis(trace)}` : untagged(trace.name);
   const rows = place.data.flatMap((trace) => pointsOf(trace).map(
-      (point) => [untagged(trace.name), ...point].map(
+      (point) => [series(trace), ...point].map(
           (cell) => typeof cell === "string" ? untagged(cell) : cell)));
-  const titles = ["series", ...axisTitles(place, place.data[0]), "text", "low", "high"];
+  const axes = axisTitles(place, place.data[0]);
+  if (several) axes[1] = "value";
+  const titles = ["series", ...axes, "text", "low", "high"];
   const known = titles.map((_, k) => k).filter(
       (k) => rows.some((row) => row[k] !== "" && row[k] !== null && row[k] !== undefined));
   return [titles, ...rows].map((row) => known.map((k) => row[k]));

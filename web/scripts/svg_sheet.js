@@ -13,7 +13,7 @@ class SvgSheet {
     this.path = [];
     this.kept = [];
     this.transform = "";
-    this.clipping = "";
+    this.numOpen = 0;  // Groups that clip all within them.
     this.numClips = 0;
     this.fillStyle = "#000";
     this.strokeStyle = "#000";
@@ -23,11 +23,13 @@ class SvgSheet {
     this.textAlign = "start";
   }
   save() {
-    const {transform, clipping, globalAlpha} = this;
-    this.kept.push({transform, clipping, globalAlpha});
+    const {transform, numOpen, globalAlpha} = this;
+    this.kept.push({transform, numOpen, globalAlpha});
   }
   restore() {
-    Object.assign(this, this.kept.pop());
+    const kept = this.kept.pop();
+    this.parts.push("</g>".repeat(this.numOpen - kept.numOpen));
+    Object.assign(this, kept);
   }
   translate(x, y) {
     this.transform += `translate(${svgNumber(x)} ${svgNumber(y)}) `;
@@ -50,8 +52,10 @@ class SvgSheet {
   }
   clip() {
     const id = `clip${++this.numClips}`;
-    this.parts.push(`<clipPath id="${id}"><path d="${this.path.join("")}"/></clipPath>`);
-    this.clipping = ` clip-path="url(#${id})"`;
+    // In the coordinates of the sheet, until what was kept is restored.
+    this.parts.push(`<clipPath id="${id}"><path d="${this.path.join("")}"/></clipPath>`,
+                    `<g clip-path="url(#${id})">`);
+    ++this.numOpen;
   }
   stroke() {
     this.add("path", `d="${this.path.join("")}" fill="none" ${this.pencil()}`);
@@ -72,7 +76,7 @@ class SvgSheet {
   text() {
     const [width, height] = [svgNumber(this.width), svgNumber(this.height)];
     return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${height}" ` +
-        `viewBox="0 0 ${width} ${height}">\n${this.parts.join("\n")}\n</svg>\n`;
+        `viewBox="0 0 ${width} ${height}">\n${this.parts.join("\n")}\n${"</g>".repeat(this.numOpen)}</svg>\n`;
   }
 
   box(x, y, width, height) {
@@ -85,8 +89,6 @@ class SvgSheet {
   add(tag, attributes, content = "") {
     const place = this.transform === "" ? "" : ` transform="${this.transform.trim()}"`;
     const alpha = this.globalAlpha === 1 ? "" : ` opacity="${this.globalAlpha}"`;
-    const drawn = `<${tag} ${attributes}${place}${alpha}>${content}</${tag}>`;
-    // A clip is in the coordinates of the sheet.
-    this.parts.push(this.clipping === "" ? drawn : `<g${this.clipping}>${drawn}</g>`);
+    this.parts.push(`<${tag} ${attributes}${place}${alpha}>${content}</${tag}>`);
   }
 }

@@ -140,10 +140,10 @@ function headerCell([, name, unit]) {
 
 function numberCell(row, [key, , , digits, intervalKey]) {
   const range = intervalKey ? interval(row[intervalKey], digits) : "";
-  // A rival against itself.
   // Figures of others are repeated as they were printed, with five digits at most.
   const value = digits > 4 || isCount(row[key], digits) ? number(row[key], digits)
                                                          : measured(row[key], digits);
+  // The ratio of a rival to itself has no width.
   if (range === "" || row[intervalKey][0] === row[intervalKey][1]) return value;
   return element("span", {}, value, element("span", {class: "interval"}, range));
 }

@@ -18,7 +18,8 @@ function number(x, digits = 4) {
 function measured(x, digits = 3) {
   if (!isNumber(x)) return kNothing;
   if (x === 0) return "0";
-  const power = Math.floor(Math.log10(Math.abs(x)));
+  // Of what is left after rounding: 999.6 has four digits before the point.
+  const power = Math.floor(Math.log10(Math.abs(Number(x.toPrecision(digits)))));
   if (power >= 7 || power < -6) return x.toExponential(digits - 1);
   return power >= digits ? x.toFixed(0) : x.toPrecision(digits);
 }
