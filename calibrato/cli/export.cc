@@ -106,7 +106,7 @@ ExitCode ExportMotion(const Options& options, const GlobalOptions& global) {
       .Set("motion_s", timed.duration_s())
       .Set("scale", timed.scale);
   if (arm) summary.Set("arm", arm->name);
-  std::vector<NewFile> files = {
+  std::vector<FileToWrite> files = {
       {options.out, RobotFile(timed, format, arm ? NamesOf(*arm) : PandaNames())}};
   if (!options.html.empty()) {
     files.push_back({options.html, DryRunHtml(summary, timed, rig, arm)});

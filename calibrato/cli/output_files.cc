@@ -37,10 +37,10 @@ void CheckOutputFiles(const std::vector<FileArgument>& outputs,
   }
 }
 
-void WriteFilesTogether(const std::vector<NewFile>& files) {
+void WriteFilesTogether(const std::vector<FileToWrite>& files) {
   std::vector<TemporaryFile> written;
   written.reserve(files.size());
-  for (const NewFile& file : files) written.emplace_back(file.path, file.content);
+  for (const FileToWrite& file : files) written.emplace_back(file.path, file.content);
   for (TemporaryFile& file : written) file.Rename();
 }
 

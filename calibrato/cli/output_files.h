@@ -16,12 +16,12 @@ struct FileArgument {
 void CheckOutputFiles(const std::vector<FileArgument>& outputs,
                       const std::vector<FileArgument>& inputs);
 
-struct NewFile {
+struct FileToWrite {
   std::string path;
   std::string content;
 };
 /// Writes all of them, or none: each has its name only once all are on the disk.
 /// @throws InputError
-void WriteFilesTogether(const std::vector<NewFile>& files);
+void WriteFilesTogether(const std::vector<FileToWrite>& files);
 
 }  // namespace calibrato

@@ -355,7 +355,7 @@ ExitCode RunPlan(const Options& options, const GlobalOptions& global) {
     if (arm) motion.provenance.Set("arm", arm->name);
   }
   const Value expected = Expectation(task, rig, motion);
-  std::vector<NewFile> files = {{options.out, ToYaml(ToValue(motion))}};
+  std::vector<FileToWrite> files = {{options.out, ToYaml(ToValue(motion))}};
   if (!options.look.rig_out.empty()) {
     files.push_back({options.look.rig_out, ToYaml(ToValue(nominal))});
   }

@@ -16,8 +16,8 @@ TEST(JointDrawing, LosesNoPeakAndNamesItsJoint) {
   joints.names = {"shoulder", "elbow"};
   joints.step_s = 0.001;
   joints.limits = Limits();
-  JointMotion still{};
-  still.position = 0.5 * (Limits().lower + Limits().upper);
+  const JointVector none = JointVector::Zero();
+  const JointMotion still{0.5 * (Limits().lower + Limits().upper), none, none, none};
   joints.samples.assign(6001, still);
   joints.samples[4321].velocity[1] = -0.5 * Limits().velocity[1];
   joints.samples[17].position[0] = Limits().upper[0];

@@ -39,13 +39,13 @@ HttpResponse GuidePage::Answer(const HttpRequest& request) {
   if (request.path == "/end") {
     // A link or an image on another page can't post with this header.
     if (request.method != "POST" || request.headers.count("x-calibrato") == 0) {
-      return Refusal(405, "to be posted by the page's own button");
+      return ErrorResponse(405, "to be posted by the page's own button");
     }
     content_.end();
     response.body = "ended\n";
     return response;
   }
-  if (request.method != "GET") return Refusal(405, "this page is only to be read");
+  if (request.method != "GET") return ErrorResponse(405, "this page is only to be read");
   if (request.path == "/") {
     response.type = "text/html; charset=utf-8";
     response.body.assign(calibrato_guide_page, calibrato_guide_page_end);
@@ -62,7 +62,7 @@ HttpResponse GuidePage::Answer(const HttpRequest& request) {
     response.body = content_.report();
   }
   if (response.body.empty() && response.status == 200) {
-    return Refusal(404, "there are /, /state, /frame and /report");
+    return ErrorResponse(404, "there are /, /state, /frame and /report");
   }
   return response;
 }

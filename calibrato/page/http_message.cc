@@ -123,7 +123,7 @@ std::optional<HttpRequest> ParseHttpRequest(std::string_view head) {
   return request;
 }
 
-HttpResponse Refusal(int status, const std::string& words) {
+HttpResponse ErrorResponse(int status, const std::string& words) {
   HttpResponse response;
   response.status = status;
   response.body = words + "\n";

@@ -38,7 +38,7 @@ struct HttpResponse {
 };
 
 /// An answer of one line of plain text, for what is not served.
-[[nodiscard]] HttpResponse Refusal(int status, const std::string& words);
+[[nodiscard]] HttpResponse ErrorResponse(int status, const std::string& words);
 
 /// The answer's bytes. Every one forbids caching, framing, and whatever comes from elsewhere.
 [[nodiscard]] std::string HttpText(const HttpResponse& response);

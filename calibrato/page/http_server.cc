@@ -153,15 +153,15 @@ void HttpServer::Answer(int connection) const {
     const std::optional<HttpRequest> request = ParseHttpRequest(*head);
     HttpResponse response;
     if (!request) {
-      response = Refusal(400, "not a request that this page knows");
+      response = ErrorResponse(400, "not a request that this page knows");
     } else if (request->has_body) {
-      response = Refusal(413, "this page takes nothing");
+      response = ErrorResponse(413, "this page takes nothing");
     } else {
       response = handler_(*request);
     }
     SendAll(connection, HttpText(response));
   } catch (const std::exception& error) {
-    SendAll(connection, HttpText(Refusal(500, error.what())));
+    SendAll(connection, HttpText(ErrorResponse(500, error.what())));
   }
 }
 

@@ -18,14 +18,14 @@ std::string LivePage::address() const {
 
 HttpResponse LivePage::Answer(const HttpRequest& request) {
   if (const auto refusal = access_.Check(request)) return *refusal;
-  if (request.method != "GET") return Refusal(405, "this page is only to be read");
+  if (request.method != "GET") return ErrorResponse(405, "this page is only to be read");
   HttpResponse response;
   if (request.path == "/") {
     try {
       response.type = "text/html; charset=utf-8";
       response.body = content_.page();
     } catch (const std::exception& error) {
-      response = Refusal(500, error.what());
+      response = ErrorResponse(500, error.what());
     }
     // Of an error too: what is not there yet may be the next time.
     response.headers["Refresh"] = "5";
@@ -33,7 +33,7 @@ HttpResponse LivePage::Answer(const HttpRequest& request) {
     response.type = "application/json; charset=utf-8";
     response.body = content_.data();
   } else {
-    return Refusal(404, "there are / and /data");
+    return ErrorResponse(404, "there are / and /data");
   }
   return response;
 }

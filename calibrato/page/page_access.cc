@@ -55,7 +55,7 @@ std::optional<HttpResponse> PageAccess::Check(const HttpRequest& request) {
   if (is_loopback_) {
     const auto host = request.headers.find("host");
     if (host != request.headers.end() && NamesLoopback(host->second)) return std::nullopt;
-    return Refusal(403, "ask for this page as 127.0.0.1 or localhost");
+    return ErrorResponse(403, "ask for this page as 127.0.0.1 or localhost");
   }
   std::string next_token;
   HttpResponse welcome;
@@ -67,7 +67,8 @@ std::optional<HttpResponse> PageAccess::Check(const HttpRequest& request) {
     }
     const auto given = request.query.find("token");
     if (given == request.query.end() || !IsSame(given->second, token_)) {
-      return Refusal(403, "the address has no token, or one that was used: the terminal shows one");
+      return ErrorResponse(
+          403, "the address has no token, or one that was used: the terminal shows one");
     }
     const std::string session = NewSecret();
     sessions_.insert(session);

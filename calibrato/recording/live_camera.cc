@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
@@ -33,8 +34,13 @@ LiveCamera::Device OpenDevice(const std::string& device) {
   const bool is_number = !device.empty() && device.size() < 4 &&
                          std::all_of(device.begin(), device.end(),
                                      [](unsigned char c) { return std::isdigit(c) != 0; });
-  const bool is_open =
-      is_number ? capture->open(std::stoi(device), cv::CAP_V4L2) : capture->open(device);
+  // OpenCV asks one library after another about a path that is not there, each with words of its
+  // own.
+  std::error_code unknown;
+  const bool is_missing = device.starts_with("/") && device.find('%') == std::string::npos &&
+                          !std::filesystem::exists(device, unknown);
+  const bool is_open = !is_missing && (is_number ? capture->open(std::stoi(device), cv::CAP_V4L2)
+                                                 : capture->open(device));
   if (!is_open) {
     throw InputError({"cannot open camera", device, "there is none, or another program has it",
                       "give a number as 0, a device as /dev/video0, or an address"});
